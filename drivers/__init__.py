@@ -1,0 +1,1 @@
+"""Drivers of haptic devices, one vendor a file, behind one contract (`device.py`)."""

@@ -1,0 +1,159 @@
+"""The command line: what the user asked for, checked, then handed to the part that does it.
+
+Nothing heavy is imported before it is needed: `--help` must answer at once.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import NoReturn
+
+from groundstation import __version__
+from groundstation.errors import InputError
+
+PROGRAM = "groundstation"
+EXIT_BAD_INPUT = 2
+
+_EXAMPLES = """\
+examples:
+  groundstation --sim                                        fly the simulated vehicle
+  groundstation --sim --mission paper                        fly a mission by hand
+  groundstation --sim --headless --mission paper --json      let the scripted hand fly it
+  groundstation --connect udpin://0.0.0.0:14540              fly a real PX4 vehicle
+  groundstation --connect serial:///dev/ttyUSB0:57600        the same through a radio
+  groundstation review                                       look at the last flight
+  groundstation missions list                                what there is to fly
+
+exit codes: 0 done, or the mission's criteria hold; 1 they do not, or a process died; 2 bad input
+"""
+
+
+class _Parser(argparse.ArgumentParser):
+    """Says what is wrong in one line, without the whole usage."""
+
+    def error(self, message: str) -> NoReturn:
+        """End with exit code 2."""
+        self.exit(EXIT_BAD_INPUT, f"{self.prog}: {message} (try --help)\n")
+
+
+def build_parser() -> argparse.ArgumentParser:
+    """Return the parser of the whole command line."""
+    parser = _Parser(
+        prog=PROGRAM,
+        description="Ground station for bilateral haptic teleoperation of multirotors: feel the drone.",
+        epilog=_EXAMPLES,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("--version", action="version", version=f"{PROGRAM} {__version__}")
+    _add_flight(parser)
+    commands = parser.add_subparsers(dest="command", metavar="COMMAND", title="commands besides flying")
+    _add_review(commands)
+    _add_missions(commands)
+    completion = commands.add_parser(
+        "completion", help="print a shell's completion script", description=_COMPLETION, formatter_class=_RAW
+    )
+    completion.add_argument("shell", choices=("bash", "zsh", "tcsh"))
+    return parser
+
+
+_RAW = argparse.RawDescriptionHelpFormatter
+_COMPLETION = """\
+Print a completion script. For bash:
+  groundstation completion bash > ~/.local/share/bash-completion/completions/groundstation"""
+
+
+def _add_flight(parser: argparse.ArgumentParser) -> None:
+    vehicle = parser.add_argument_group("vehicle (one of)").add_mutually_exclusive_group()
+    vehicle.add_argument("--sim", action="store_true", help="start and fly a simulated vehicle")
+    vehicle.add_argument(
+        "--connect",
+        metavar="URL",
+        help="fly the vehicle at udpin://HOST:PORT, udpout://HOST:PORT, tcpout://HOST:PORT or serial://PORT:BAUD",
+    )
+    flight = parser.add_argument_group("flight")
+    flight.add_argument("--mission", metavar="NAME", help="a mission by name or .toml file (default: free flight)")
+    flight.add_argument("--device", metavar="NAME[:ADDRESS]", help="haptic device (default: the on-screen stick)")
+    flight.add_argument("--headless", action="store_true", help="no screen: the scripted hand flies the mission")
+    flight.add_argument("--json", action="store_true", help="with --headless: the summary as one JSON object")
+    flight.add_argument(
+        "--confirm-real", action="store_true", help="with --headless --connect: yes, fly a real vehicle by itself"
+    )
+    sim = parser.add_argument_group("simulated vehicle (with --sim)")
+    sim.add_argument("--airframe", metavar="NAME", help="a preset's name or a .toml file (default: the mission's)")
+    sim.add_argument("--model", choices=("kinematic", "dynamic"), help="motion model (default: the mission's)")
+    sim.add_argument("--seed", type=int, metavar="N", help="seed of all that is random (default: 0)", default=0)
+    general = parser.add_argument_group("settings and recording")
+    general.add_argument("--config", type=Path, metavar="FILE", help="settings (default: groundstation.toml)")
+    general.add_argument("--logs", type=Path, default=Path("logs"), metavar="DIR", help="recordings go here")
+    general.add_argument("--rerun", action="store_true", help="show the flight live in the Rerun viewer")
+
+
+def _add_review(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:  # noqa: SLF001
+    review = commands.add_parser(
+        "review",
+        help="look at a recorded flight in the Rerun viewer",
+        description="Open a recording in the Rerun viewer; without one, the newest.",
+    )
+    review.add_argument("log", nargs="?", type=Path, metavar="LOG", help="an .rrd file (default: the newest)")
+    review.add_argument("--list", action="store_true", help="list the recorded flights, newest first")
+    review.add_argument("--web", action="store_true", help="serve the viewer to a browser on this machine")
+    review.add_argument("--logs", type=Path, default=Path("logs"), metavar="DIR", help="where recordings are")
+
+
+def _add_missions(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:  # noqa: SLF001
+    missions = commands.add_parser("missions", help="list or check missions")
+    acts = missions.add_subparsers(dest="act", metavar="ACT", required=True)
+    acts.add_parser("list", help="what comes with the program")
+    check = acts.add_parser("check", help="say whether mission files are right")
+    check.add_argument("files", nargs="+", type=Path, metavar="FILE")
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Run the command line and exit with its code."""
+    parser = build_parser()
+    asked = parser.parse_args(arguments)
+    try:
+        code = _dispatch(parser, asked)
+    except InputError as error:
+        print(f"{PROGRAM}: {error}", file=sys.stderr)
+        code = EXIT_BAD_INPUT
+    except KeyboardInterrupt:
+        code = 130
+    except BrokenPipeError:
+        # Whoever read our output has gone (`| head`); that is no error of ours.
+        sys.stderr.close()
+        code = 0
+    sys.exit(code)
+
+
+def _dispatch(parser: argparse.ArgumentParser, asked: argparse.Namespace) -> int:
+    if asked.command == "completion":
+        import shtab
+
+        print(shtab.complete(parser, shell=asked.shell))
+        return 0
+    if asked.command == "missions":
+        from groundstation.training import listing
+
+        return listing.show() if asked.act == "list" else listing.check(asked.files)
+    if asked.command == "review":
+        return _review(asked)
+    if not asked.sim and not asked.connect:
+        parser.print_help()
+        return EXIT_BAD_INPUT
+    from groundstation import fly
+
+    return fly.fly(asked)
+
+
+def _review(asked: argparse.Namespace) -> int:
+    from groundstation.review import show
+
+    return show.list_all(asked.logs) if asked.list else show.show(asked.log, asked.logs, web=asked.web)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,109 @@
+"""The operator's side of the bus: the newest of every topic as one snapshot, and the acts of the operator.
+
+The screen and the headless flight are both built on it; neither knows more of the other processes than this.
+"""
+
+from __future__ import annotations
+
+import itertools
+import time
+from collections import deque
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from groundstation.bus import Bus
+from groundstation.messages import (
+    COMMAND,
+    COMMAND_ANSWER,
+    DEVICE_REPORT,
+    EVENT,
+    HANDLE,
+    PILOT_STATE,
+    SERVO_REPORT,
+    SETPOINT,
+    VEHICLE_STATE,
+    VEHICLE_STATUS,
+    Command,
+    CommandAnswer,
+    CommandKind,
+    DeviceReport,
+    Event,
+    Handle,
+    PilotState,
+    ServoReport,
+    Setpoint,
+    VehicleState,
+    VehicleStatus,
+)
+
+_EVENTS_KEPT = 500
+
+
+@dataclass(frozen=True, slots=True)
+class Snapshot:
+    """Everything known at one moment; a field is None until its first record came.
+
+    Attributes:
+        t: When the snapshot was taken, monotonic s.
+        events: The latest events, oldest first.
+        answers: Answers to commands since the last snapshot.
+    """
+
+    t: float
+    handle: Handle | None
+    setpoint: Setpoint | None
+    pilot: PilotState | None
+    vehicle: VehicleState | None
+    status: VehicleStatus | None
+    servo: ServoReport | None
+    device: DeviceReport | None
+    events: tuple[Event, ...]
+    answers: tuple[CommandAnswer, ...]
+
+
+class Console:
+    """Reads the bus for people and sends their commands.
+
+    Args:
+        bus: This process's place on the bus.
+        source: Who gives the commands, as in "screen" or "headless".
+        clock: Monotonic seconds.
+    """
+
+    def __init__(self, bus: Bus, source: str, clock: Callable[[], float] = time.monotonic) -> None:
+        self._clock = clock
+        self._source = source.encode()
+        self._numbers = itertools.count(1)
+        self._commands = bus.publisher(COMMAND)
+        self._handle = bus.subscriber(HANDLE, depth=1)
+        self._setpoint = bus.subscriber(SETPOINT, depth=1)
+        self._pilot = bus.subscriber(PILOT_STATE, depth=1)
+        self._vehicle = bus.subscriber(VEHICLE_STATE, depth=1)
+        self._status = bus.subscriber(VEHICLE_STATUS, depth=1)
+        self._servo = bus.subscriber(SERVO_REPORT, depth=1)
+        self._device = bus.subscriber(DEVICE_REPORT, depth=1)
+        self._answers = bus.subscriber(COMMAND_ANSWER)
+        self._event_stream = bus.subscriber(EVENT)
+        self._events: deque[Event] = deque(maxlen=_EVENTS_KEPT)
+
+    def snapshot(self) -> Snapshot:
+        """Return the newest of everything."""
+        self._events.extend(self._event_stream.drain())
+        return Snapshot(
+            t=self._clock(),
+            handle=self._handle.newest(),
+            setpoint=self._setpoint.newest(),
+            pilot=self._pilot.newest(),
+            vehicle=self._vehicle.newest(),
+            status=self._status.newest(),
+            servo=self._servo.newest(),
+            device=self._device.newest(),
+            events=tuple(self._events),
+            answers=tuple(self._answers.drain()),
+        )
+
+    def command(self, kind: CommandKind) -> int:
+        """Send a command and return its number, which its answer will carry."""
+        number = next(self._numbers)
+        self._commands.send(Command(t=self._clock(), number=number, kind=int(kind), source=self._source))
+        return number

@@ -1,0 +1,137 @@
+"""From what the user asked for to a running flight: settings, mission, run, processes, then screen or headless."""
+
+from __future__ import annotations
+
+import argparse
+import datetime
+import os
+import sys
+from pathlib import Path
+
+import msgspec
+
+from groundstation.bus import new_run_id, run_folder, sweep_dead_runs
+from groundstation.config import load_settings
+from groundstation.errors import InputError
+from groundstation.processes import free_port, running
+from groundstation.run import Run
+from groundstation.training.mission import Mission, find_mission, load_mission
+from groundstation.vehicle.transport import parse_url
+
+FREE_FLIGHT = "free"
+
+
+def fly(asked: argparse.Namespace) -> int:
+    """Fly as asked and return the exit code.
+
+    Raises:
+        InputError: Something asked for cannot be.
+    """
+    _check(asked)
+    sweep_dead_runs()
+    run = plan(asked)
+    options = _sim_options(asked)
+    with running(run, "headless" if asked.headless else "screen", options) as (bus, supervisor):
+        if asked.headless:
+            from groundstation.headless import fly_headless
+
+            return fly_headless(run, bus, supervisor, as_json=asked.json)
+        from groundstation.tui.app import fly_on_screen
+
+        return fly_on_screen(run, bus, supervisor)
+
+
+def plan(asked: argparse.Namespace) -> Run:
+    """Turn what was asked for into a run.
+
+    Raises:
+        InputError: A file, a URL or a value is wrong.
+    """
+    settings = load_settings(asked.config)
+    path = _mission_path(asked)
+    mission = _with_vehicle(load_mission(path), asked) if path else None
+    url = asked.connect or f"udpin://127.0.0.1:{free_port()}"
+    parse_url(url)
+    now = datetime.datetime.now().astimezone()
+    run_id = new_run_id()
+    return Run(
+        run_id=run_id,
+        url=url,
+        simulated=asked.sim,
+        device=asked.device or _own_hand(run_id, headless=asked.headless),
+        mission=mission,
+        mission_path=str(path.resolve()) if path else "",
+        settings=settings,
+        log=str(_log_stem(asked.logs, now, mission)),
+        viewer_url=_viewer(asked),
+        started=now.isoformat(timespec="milliseconds"),
+    )
+
+
+def _check(asked: argparse.Namespace) -> None:
+    """Refuse combinations that mean nothing, before anything starts."""
+    if asked.headless and not asked.mission:
+        raise InputError("--headless needs a --mission to fly; see 'groundstation missions list'.")
+    if asked.headless and asked.device:
+        raise InputError("--headless flies with the scripted hand; leave --device out.")
+    if asked.json and not asked.headless:
+        raise InputError("--json is the summary of a --headless flight; add --headless.")
+    if asked.headless and asked.connect and not asked.confirm_real:
+        raise InputError("--headless --connect flies a real vehicle by itself; add --confirm-real if you mean it.")
+    if asked.connect and (asked.airframe or asked.model):
+        raise InputError("--airframe and --model are the simulator's; a real vehicle brings its own.")
+    if not asked.headless and not (sys.stdin.isatty() and sys.stdout.isatty()):
+        raise InputError("the screen needs a terminal; use --headless --mission NAME without one.")
+
+
+def _mission_path(asked: argparse.Namespace) -> Path | None:
+    if asked.mission:
+        return find_mission(asked.mission)
+    return find_mission(FREE_FLIGHT) if asked.sim else None
+
+
+def _with_vehicle(mission: Mission, asked: argparse.Namespace) -> Mission:
+    """Let the flags choose the simulated vehicle over the mission."""
+    choice = mission.vehicle
+    choice = msgspec.structs.replace(
+        choice, airframe=asked.airframe or choice.airframe, model=asked.model or choice.model
+    )
+    return msgspec.structs.replace(mission, vehicle=choice)
+
+
+def _sim_options(asked: argparse.Namespace) -> tuple[str, ...]:
+    options = ["--seed", str(asked.seed)]
+    if asked.airframe:
+        options += ["--airframe", asked.airframe]
+    if asked.model:
+        options += ["--model", asked.model]
+    return tuple(options)
+
+
+def _own_hand(run_id: str, *, headless: bool) -> str:
+    """Return the device that this program itself moves, by datagrams on a socket in the run's folder."""
+    return f"{'scripted' if headless else 'virtual'}:{run_folder(run_id) / 'hand.sock'}"
+
+
+def _log_stem(folder: Path, now: datetime.datetime, mission: Mission | None) -> Path:
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InputError(f"{folder}: cannot be made a folder for logs ({error.strerror}).") from error
+    if not os.access(folder, os.W_OK):
+        raise InputError(f"{folder}: is not writable; recordings go there, choose another with --logs.")
+    name = mission.name.replace(" ", "-") if mission else "flight"
+    stem = folder.resolve() / f"{now:%Y-%m-%d_%H-%M-%S}_{name}"
+    number = 2
+    while any(stem.parent.glob(f"{stem.name}.*")):
+        stem = stem.with_name(f"{now:%Y-%m-%d_%H-%M-%S}_{name}_{number}")
+        number += 1
+    return stem
+
+
+def _viewer(asked: argparse.Namespace) -> str:
+    if not asked.rerun:
+        return ""
+    from groundstation.recording.live import start_viewer
+
+    return start_viewer()

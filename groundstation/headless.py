@@ -1,0 +1,220 @@
+"""A flight without a screen: the scripted hand flies a mission through the very processes a person would.
+
+A simulated operator (`sim.operator`) looks at the vehicle and decides where it should go; what they want of it is
+turned back through the rate mapping into where the hand should be, and the arm (`drivers.scripted`) takes it there.
+"""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Callable
+from enum import Enum
+
+from drivers.stick import StickSender
+from groundstation.bus import Bus
+from groundstation.console import Console, Snapshot
+from groundstation.errors import InputError
+from groundstation.messages import MISSION_PROGRESS, CommandAnswer, CommandKind, Health, Phase
+from groundstation.pilot.mapping import RateMapping
+from groundstation.processes import Supervisor
+from groundstation.run import Run
+from groundstation.training.director import Director, Stage
+from groundstation.training.mission import Mission, MissionError
+from groundstation.training.summary import Narrator, summarise
+from sim.airframe import load_airframe
+from sim.operator import Operator
+from sim.world import World
+
+TURN_S = 0.02
+_STEP_S = 20.0
+_RETRY_S = 1.0
+# Beyond the mission's own limit the flight is given up and landed, s.
+_GRACE_S = 15.0
+
+
+class Step(Enum):
+    """What the flight is at; each is left when the vehicle shows that it is done."""
+
+    CONNECT = "connecting"
+    ARM = "arming"
+    TAKEOFF = "taking off"
+    ENGAGE = "engaging"
+    FLY = "flying"
+    DISENGAGE = "letting go"
+    LAND = "landing"
+    DONE = "done"
+
+
+_ORDER = tuple(Step)
+_COMMANDS = {
+    Step.ARM: CommandKind.ARM,
+    Step.TAKEOFF: CommandKind.TAKEOFF,
+    Step.ENGAGE: CommandKind.ENGAGE,
+    Step.DISENGAGE: CommandKind.DISENGAGE,
+    Step.LAND: CommandKind.LAND,
+}
+
+
+class HeadlessFlight:
+    """Flies one mission; `turn` is one pass, to be called every `TURN_S`.
+
+    Args:
+        mission: What to fly.
+        console: The operator's side of the bus.
+        director: Follows the mission.
+        hand: The simulated operator and the arm that does what they want.
+
+    Attributes:
+        step: What the flight is at.
+        failure: Why it was given up, in words; empty while all is well.
+    """
+
+    def __init__(self, mission: Mission, console: Console, director: Director, hand: Hand) -> None:
+        self._mission = mission
+        self._console = console
+        self._director = director
+        self._hand = hand
+        self._since: float | None = None
+        self._next_try = 0.0
+        self._refusal = ""
+        self._seen_t = 0.0
+        self._controlled_t = 0.0
+        self.step = Step.CONNECT
+        self.failure = ""
+
+    def turn(self, view: Snapshot) -> None:
+        """Look at the newest of everything and do what comes next."""
+        if self._since is None:
+            self._since = view.t
+        self._follow(view)
+        self._note_refusals(view.answers)
+        self._hand.move(view, flying=self.step is Step.FLY)
+        if self._done(view):
+            self.step = _ORDER[_ORDER.index(self.step) + 1]
+            self._since, self._next_try, self._refusal = view.t, 0.0, ""
+        elif view.t - self._since > self._patience():
+            self._give_up(view.t)
+        elif self.step in _COMMANDS and view.t >= self._next_try:
+            self._next_try = view.t + _RETRY_S
+            self._console.command(_COMMANDS[self.step])
+
+    def abort(self, why: str) -> None:
+        """Give the flight up: the pilot lets go, the vehicle holds, nothing more is asked of it."""
+        self._console.command(CommandKind.DISENGAGE)
+        self.failure = self.failure or why
+        self.step = Step.DONE
+
+    def _follow(self, view: Snapshot) -> None:
+        status, state, pilot = view.status, view.vehicle, view.pilot
+        if status and state and state.valid and state.t > self._seen_t:
+            self._seen_t = state.t
+            x, y, z, _ = state.position
+            self._director.vehicle(state.t, (x, y, z), in_air=bool(status.in_air), armed=bool(status.armed))
+        if pilot and pilot.phase == Phase.ENGAGED and pilot.t > self._controlled_t:
+            self._controlled_t = pilot.t
+            self._director.controller((pilot.error[0], pilot.error[1], pilot.error[2]), tuple(pilot.force))
+
+    def _note_refusals(self, answers: tuple[CommandAnswer, ...]) -> None:
+        for answer in answers:
+            if not answer.ok:
+                self._refusal = answer.text.decode(errors="replace")
+
+    def _done(self, view: Snapshot) -> bool:
+        """Say whether the vehicle shows that the present step is done."""
+        status, pilot = view.status, view.pilot
+        if status is None:
+            return False
+        if self.step is Step.CONNECT:
+            return bool(status.connected) and bool(status.health & Health.ARMABLE) and view.servo is not None
+        if self.step is Step.ARM:
+            return bool(status.armed)
+        if self.step is Step.TAKEOFF:
+            return self._director.stage not in {Stage.WAITING, Stage.TAKING_OFF}
+        if self.step is Step.ENGAGE:
+            return pilot is not None and pilot.phase == Phase.ENGAGED
+        if self.step is Step.FLY:
+            return self._flown(view)
+        if self.step is Step.DISENGAGE:
+            return pilot is not None and pilot.phase == Phase.DISENGAGED
+        return self.step is Step.LAND and not status.armed
+
+    def _flown(self, view: Snapshot) -> bool:
+        if self._director.stage is Stage.RETURNING:
+            return True
+        if view.pilot is not None and view.pilot.phase == Phase.DISENGAGED:
+            self.failure = f"the hand was uncoupled: {view.pilot.reason.decode(errors='replace')}"
+            return True
+        return False
+
+    def _patience(self) -> float:
+        return self._mission.criteria.time_limit_s + _GRACE_S if self.step is Step.FLY else _STEP_S + 10.0
+
+    def _give_up(self, now: float) -> None:
+        """Say why, and come down if in the air."""
+        why = f" ({self._refusal.rstrip('.')})" if self._refusal else ""
+        self.failure = self.failure or f"{self.step.value} took too long{why}"
+        self.step = Step.DISENGAGE if self.step is Step.FLY else Step.DONE
+        self._since, self._next_try = now, 0.0
+
+
+class Hand:
+    """The simulated operator's head and arm: from what is seen to where the handle should be.
+
+    Args:
+        mission: Gives the route and the target.
+        mapping: The rate mapping the pilot flies with.
+        sender: Takes the wish to the scripted hand.
+        seed: Of the operator's noise.
+        clock: Monotonic seconds.
+    """
+
+    def __init__(
+        self, mission: Mission, mapping: RateMapping, sender: StickSender, seed: int, clock: Callable[[], float]
+    ) -> None:
+        route, target = mission.route, mission.target
+        self._operator = Operator(route, target.position, seed=seed) if target else None
+        self._mapping = mapping
+        self._sender = sender
+        self._clock = clock
+
+    def move(self, view: Snapshot, *, flying: bool) -> None:
+        """Hold the handle where the operator wants it; at the centre while there is nothing to fly."""
+        displacement = ((0.0, 0.0, 0.0), 0.0)
+        state = view.vehicle
+        if flying and self._operator and state and state.valid:
+            x, y, z, yaw = state.position
+            vx, vy, vz, _ = state.velocity
+            wish = self._operator.decide(view.t, (x, y, z, yaw), (vx, vy, vz))
+            displacement = self._mapping.displacement_for(wish, yaw)
+        position, twist = displacement
+        self._sender.send(position, twist, 0, self._clock())
+
+
+def fly_headless(run: Run, bus: Bus, supervisor: Supervisor, *, as_json: bool, seed: int) -> int:
+    """Fly the run's mission, tell how it goes on stderr and how it went on stdout; return the exit code."""
+    mission = run.mission
+    if mission is None:
+        raise InputError("--headless needs a --mission to fly.")
+    from drivers.scripted import WORKSPACE
+
+    console = Console(bus, "headless")
+    airframe = load_airframe(mission.vehicle.airframe)
+    director = Director(mission, World(mission.obstacle), airframe.radius)
+    sender = StickSender(run.device.partition(":")[2])
+    mapping = RateMapping(run.settings.mapping, WORKSPACE)
+    flight = HeadlessFlight(mission, console, director, Hand(mission, mapping, sender, seed, time.monotonic))
+    progress = bus.publisher(MISSION_PROGRESS)
+    narrator = Narrator(sys.stderr)
+    view = console.snapshot()
+    while flight.step is not Step.DONE:
+        for sentence in supervisor.poll():
+            flight.abort(sentence)
+        view = console.snapshot()
+        flight.turn(view)
+        progress.send(director.progress(view.t))
+        narrator.tell(flight.step.value, director, view)
+        bus.heartbeat()
+        time.sleep(TURN_S)
+    supervisor.stop()
+    return summarise(run, director, view.servo, flight.failure, as_json=as_json)

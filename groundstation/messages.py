@@ -1,0 +1,401 @@
+"""The records on the bus, one a topic.
+
+Every record has its time `t`, s on the monotonic clock all processes of a machine share. World is ENU with
+its origin where the vehicle was first armed; vectors of four are `[x, y, z, yaw]` in the world and
+`[forward, left, up, yaw_rate]` on the vehicle; SI throughout.
+"""
+
+from __future__ import annotations
+
+import ctypes
+from dataclasses import dataclass
+from enum import IntEnum, IntFlag
+from typing import Generic, TypeVar
+
+_F64 = ctypes.c_double
+_U64 = ctypes.c_uint64
+_U32 = ctypes.c_uint32
+_U8 = ctypes.c_uint8
+
+
+# Sizes of text fields, bytes, with the closing zero.
+EVENT_TEXT = 240
+ANSWER_TEXT = 200
+REASON_TEXT = 160
+
+
+class Record(ctypes.Structure):
+    """What all records share."""
+
+    t: float
+
+    @classmethod
+    def type_name(cls) -> str:
+        """Name under which iceoryx2 checks that both ends mean the same record."""
+        return cls.__name__
+
+
+class FlightMode(IntEnum):
+    """Who steers the vehicle now, as its heartbeat says."""
+
+    UNKNOWN = 0
+    READY = 1
+    TAKEOFF = 2
+    HOLD = 3
+    OFFBOARD = 4
+    RETURN = 5
+    LAND = 6
+    MISSION = 7
+    POSITION = 8
+    ALTITUDE = 9
+    MANUAL = 10
+    OTHER = 11
+
+
+class Phase(IntEnum):
+    """How far the hand is coupled to the vehicle."""
+
+    DISENGAGED = 0
+    ENGAGING = 1
+    ENGAGED = 2
+
+
+class Stream(IntEnum):
+    """State of the setpoints' stream from the link to the vehicle."""
+
+    IDLE = 0
+    STARTING = 1
+    FLYING = 2
+    ENDED = 3
+
+
+class CommandKind(IntEnum):
+    """What the operator can ask for."""
+
+    ARM = 1
+    DISARM = 2
+    TAKEOFF = 3
+    LAND = 4
+    RETURN = 5
+    HOLD = 6
+    ENGAGE = 7
+    DISENGAGE = 8
+    KILL = 9
+
+
+class Severity(IntEnum):
+    """How much an event matters."""
+
+    INFO = 0
+    WARNING = 1
+    ALARM = 2
+
+
+class Health(IntFlag):
+    """What the vehicle's estimator and sensors say of themselves."""
+
+    GYRO = 1
+    ACCELEROMETER = 2
+    MAGNETOMETER = 4
+    LOCAL_POSITION = 8
+    GLOBAL_POSITION = 16
+    HOME = 32
+    ARMABLE = 64
+
+
+class Handle(Record):
+    """The hand and the force on it, every servo tick (handle frame)."""
+
+    position: ctypes.Array[_F64]
+    velocity: ctypes.Array[_F64]
+    force: ctypes.Array[_F64]
+    yaw: float
+    device_t: float
+    tick: int
+    buttons: int
+    homed: int
+    present: int
+    _fields_ = (
+        ("t", _F64),
+        ("position", _F64 * 3),
+        ("velocity", _F64 * 3),
+        ("force", _F64 * 3),
+        ("yaw", _F64),
+        ("device_t", _F64),
+        ("tick", _U64),
+        ("buttons", _U32),
+        ("homed", _U8),
+        ("present", _U8),
+    )
+
+
+class Setpoint(Record):
+    """What the vehicle shall do: v_ref of equation (4) on its own axes, within limits; 50 Hz while active."""
+
+    velocity: ctypes.Array[_F64]
+    handle_t: float
+    number: int
+    active: int
+    _fields_ = (
+        ("t", _F64),
+        ("velocity", _F64 * 4),
+        ("handle_t", _F64),
+        ("number", _U64),
+        ("active", _U8),
+    )
+
+
+class PilotState(Record):
+    """The inside of the controller, 50 Hz: equations (4) and (5) term by term."""
+
+    p_h: ctypes.Array[_F64]
+    p_h_rate: ctypes.Array[_F64]
+    error: ctypes.Array[_F64]
+    v_ref: ctypes.Array[_F64]
+    force: ctypes.Array[_F64]
+    state_age: float
+    phase: int
+    on_leash: int
+    centred: int
+    reason: bytes
+    _fields_ = (
+        ("t", _F64),
+        ("p_h", _F64 * 4),
+        ("p_h_rate", _F64 * 4),
+        ("error", _F64 * 4),
+        ("v_ref", _F64 * 4),
+        ("force", _F64 * 3),
+        ("state_age", _F64),
+        ("phase", _U8),
+        ("on_leash", _U8),
+        ("centred", _U8),
+        ("reason", ctypes.c_char * REASON_TEXT),
+    )
+
+
+class VehicleState(Record):
+    """Where the vehicle says it is, each time it says so (`t` is the arrival)."""
+
+    position: ctypes.Array[_F64]
+    velocity: ctypes.Array[_F64]
+    roll: float
+    pitch: float
+    boot_t: float
+    valid: int
+    _fields_ = (
+        ("t", _F64),
+        ("position", _F64 * 4),
+        ("velocity", _F64 * 4),
+        ("roll", _F64),
+        ("pitch", _F64),
+        ("boot_t", _F64),
+        ("valid", _U8),
+    )
+
+
+class VehicleStatus(Record):
+    """What changes slowly about vehicle and link: 10 Hz, and at once on a change.
+
+    Attributes:
+        heard_t: When the last frame of the vehicle came, s; 0 before the first.
+        loss: Share of the vehicle's frames lost in the last seconds, 0 to 1.
+        rtt: Round trip by TIMESYNC, s; NaN before the first answer.
+        sent: Setpoint frames that left.
+        dropped: Setpoint frames the gate kept back.
+        streaming: State of the setpoint stream, `groundstation.vehicle.offboard.Stream`: 0 idle, 1 starting,
+            2 flying (the vehicle confirmed offboard for this very stream), 3 ended.
+    """
+
+    heard_t: float
+    loss: float
+    rtt: float
+    battery: float
+    voltage: float
+    sent: int
+    dropped: int
+    health: int
+    system_id: int
+    connected: int
+    armed: int
+    in_air: int
+    mode: int
+    streaming: int
+    _fields_ = (
+        ("t", _F64),
+        ("heard_t", _F64),
+        ("loss", _F64),
+        ("rtt", _F64),
+        ("battery", _F64),
+        ("voltage", _F64),
+        ("sent", _U64),
+        ("dropped", _U64),
+        ("health", _U32),
+        ("system_id", _U32),
+        ("connected", _U8),
+        ("armed", _U8),
+        ("in_air", _U8),
+        ("mode", _U8),
+        ("streaming", _U8),
+    )
+
+
+class Command(Record):
+    """An act of the operator. Every one gets one `CommandAnswer`."""
+
+    number: int
+    kind: int
+    source: bytes
+    _fields_ = (("t", _F64), ("number", _U64), ("kind", _U8), ("source", ctypes.c_char * 16))
+
+
+class CommandAnswer(Record):
+    """What became of a command, in words where it was refused."""
+
+    number: int
+    kind: int
+    ok: int
+    text: bytes
+    _fields_ = (
+        ("t", _F64),
+        ("number", _U64),
+        ("kind", _U8),
+        ("ok", _U8),
+        ("text", ctypes.c_char * ANSWER_TEXT),
+    )
+
+
+class Event(Record):
+    """Something that happened, in words."""
+
+    severity: int
+    source: bytes
+    text: bytes
+    _fields_ = (
+        ("t", _F64),
+        ("severity", _U8),
+        ("source", ctypes.c_char * 16),
+        ("text", ctypes.c_char * EVENT_TEXT),
+    )
+
+
+class ServoReport(Record):
+    """How well the servo keeps its time, 2 Hz. Counts are since its start, figures of the last window.
+
+    Attributes:
+        ticks: Ticks run since start.
+        missed: Ticks that did not run because an earlier one was too late.
+        late_p50: Lateness of a tick's start, s; also p99 and largest.
+        read: Longest time to read the device, s; likewise to write the force.
+        realtime: The system granted real-time priority.
+    """
+
+    rate: float
+    late_p50: float
+    late_p99: float
+    late_max: float
+    read: float
+    write: float
+    step: float
+    ticks: int
+    missed: int
+    realtime: int
+    _fields_ = (
+        ("t", _F64),
+        ("rate", _F64),
+        ("late_p50", _F64),
+        ("late_p99", _F64),
+        ("late_max", _F64),
+        ("read", _F64),
+        ("write", _F64),
+        ("step", _F64),
+        ("ticks", _U64),
+        ("missed", _U64),
+        ("realtime", _U8),
+    )
+
+
+class DeviceReport(Record):
+    """Which haptic device there is and what it can do, 2 Hz."""
+
+    name: bytes
+    serial: bytes
+    renders: bytes
+    workspace: float
+    force_limit: float
+    present: int
+    homed: int
+    _fields_ = (
+        ("t", _F64),
+        ("name", ctypes.c_char * 64),
+        ("serial", ctypes.c_char * 64),
+        ("renders", ctypes.c_char * 16),
+        ("workspace", _F64),
+        ("force_limit", _F64),
+        ("present", _U8),
+        ("homed", _U8),
+    )
+
+
+class MissionProgress(Record):
+    """How far the mission is: the stage in words, the leg of the route, the distance to its end."""
+
+    stage: bytes
+    leg: int
+    legs: int
+    target_distance: float
+    clearance: float
+    collisions: int
+    _fields_ = (
+        ("t", _F64),
+        ("stage", ctypes.c_char * 48),
+        ("leg", _U32),
+        ("legs", _U32),
+        ("target_distance", _F64),
+        ("clearance", _F64),
+        ("collisions", _U32),
+    )
+
+
+class Heartbeat(Record):
+    """A process is alive and its loop turns, 10 Hz."""
+
+    role: bytes
+    pid: int
+    _fields_ = (("t", _F64), ("role", ctypes.c_char * 16), ("pid", _U32))
+
+
+R = TypeVar("R", bound=Record)
+
+
+@dataclass(frozen=True)
+class Topic(Generic[R]):
+    """A named stream of one kind of record.
+
+    Attributes:
+        depth: Records a subscriber may fall behind before it loses the oldest.
+        history: Records a subscriber that comes late still gets.
+    """
+
+    name: str
+    record: type[R]
+    depth: int = 64
+    history: int = 1
+
+
+HANDLE = Topic("handle", Handle, depth=4096)
+SETPOINT = Topic("setpoint", Setpoint, depth=256)
+PILOT_STATE = Topic("pilot_state", PilotState, depth=256)
+VEHICLE_STATE = Topic("vehicle_state", VehicleState, depth=1024)
+VEHICLE_STATUS = Topic("vehicle_status", VehicleStatus, depth=256)
+COMMAND = Topic("command", Command, history=0)
+COMMAND_ANSWER = Topic("command_answer", CommandAnswer, history=0)
+EVENT = Topic("event", Event, depth=256, history=32)
+SERVO_REPORT = Topic("servo_report", ServoReport)
+DEVICE_REPORT = Topic("device_report", DeviceReport)
+MISSION_PROGRESS = Topic("mission_progress", MissionProgress)
+HEARTBEAT = Topic("heartbeat", Heartbeat, history=0)
+
+
+def fit(text: str, size: int) -> bytes:
+    """Return text as UTF-8 that fits a field of `size` bytes, cut between characters."""
+    return text.encode()[: size - 1].decode(errors="ignore").encode()

@@ -1,0 +1,1 @@
+"""Writes every flight to a Rerun recording."""

@@ -1,0 +1,66 @@
+"""One run of the program: what the supervisor decides once and every process reads."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import msgspec
+from msgspec import Struct
+
+from groundstation.bus import run_folder
+from groundstation.config import Settings
+from groundstation.training.mission import Mission
+
+RUN_FILE = "run.json"
+
+
+class Run(Struct, frozen=True):
+    """What a run is made of.
+
+    Attributes:
+        run_id: Names the bus and the run's folder.
+        url: Where the vehicle is, as in `--connect`.
+        simulated: The vehicle is ours. Only for labels and for asking back, never for control.
+        device: Which haptic device, as `driver` or `driver:address`.
+        mission: The mission, or None for free flight.
+        mission_path: Its file, or "".
+        settings: All settings.
+        log: Path of the recording without suffix; `.rrd` and `.tlog` are beside each other.
+        viewer_url: A live Rerun viewer to stream to, or "".
+        started: Wall-clock time of the start, ISO 8601.
+    """
+
+    run_id: str
+    url: str
+    simulated: bool
+    device: str
+    mission: Mission | None
+    mission_path: str
+    settings: Settings
+    log: str
+    viewer_url: str
+    started: str
+
+    @property
+    def recording(self) -> Path:
+        """The Rerun recording's path."""
+        return Path(f"{self.log}.rrd")
+
+    @property
+    def tlog(self) -> Path:
+        """The MAVLink log's path."""
+        return Path(f"{self.log}.tlog")
+
+
+def write_run(run: Run) -> Path:
+    """Write the run file where its processes find it and return its path."""
+    folder = run_folder(run.run_id)
+    folder.mkdir(mode=0o700, parents=True, exist_ok=True)
+    path = folder / RUN_FILE
+    path.write_bytes(msgspec.json.encode(run))
+    return path
+
+
+def read_run(path: Path) -> Run:
+    """Read a run file back."""
+    return msgspec.json.decode(path.read_bytes(), type=Run)

@@ -1,0 +1,1 @@
+"""Missions: what a flight is for and when it has succeeded."""

@@ -1,0 +1,140 @@
+"""What a headless flight tells: progress on the way, the summary at the end."""
+
+from __future__ import annotations
+
+import json
+import math
+import sys
+import time
+from typing import TextIO
+
+from groundstation.console import Snapshot
+from groundstation.messages import Event, ServoReport, Severity
+from groundstation.run import Run
+from groundstation.training.director import Director
+
+_EVERY_S = 0.2
+
+
+class Narrator:
+    """Tells the progress: on a terminal one line that changes, else a line whenever the stage does.
+
+    Args:
+        out: Where to.
+    """
+
+    def __init__(self, out: TextIO) -> None:
+        self._out = out
+        self._live = out.isatty()
+        self._last = ""
+        self._next = 0.0
+        self._told_t = time.monotonic()
+
+    def tell(self, step: str, director: Director, view: Snapshot) -> None:
+        """Tell what is new."""
+        for event in view.events:
+            if event.t > self._told_t:
+                self._told_t = event.t
+                if event.severity != Severity.INFO:
+                    self._line(_words(event))
+        if self._live and view.t >= self._next:
+            self._next = view.t + _EVERY_S
+            self._out.write(f"\r\x1b[K{step}: {_figures(director, view)}")
+            self._out.flush()
+        elif not self._live and step != self._last:
+            self._line(step)
+        self._last = step
+
+    def close(self) -> None:
+        """End the changing line."""
+        if self._live:
+            self._out.write("\r\x1b[K")
+            self._out.flush()
+
+    def _line(self, text: str) -> None:
+        self._out.write(f"\r\x1b[K{text}\n" if self._live else f"{text}\n")
+        self._out.flush()
+
+
+def summary(run: Run, director: Director, servo: ServoReport | None, failure: str) -> dict[str, object]:
+    """Return a flight's summary as it is printed with `--json`. Numbers that do not exist are null."""
+    figures = director.figures
+    report = servo or ServoReport(late_p50=math.nan, late_p99=math.nan, rate=math.nan)
+    return {
+        "completed": not failure and not director.shortcomings(),
+        "mission": director.mission.name,
+        "simulated": run.simulated,
+        "collisions": figures.collisions,
+        "duration_s": _rounded(figures.duration, 2),
+        "path_m": _rounded(figures.path, 3),
+        "rms_error_m": _rounded(figures.rms_error, 4),
+        "final_error_m": _rounded(figures.final_error, 4),
+        "max_force_n": _rounded(figures.max_force, 3),
+        "servo": {
+            "rate_hz": _rounded(report.rate, 1),
+            "ticks": int(report.ticks),
+            "missed": int(report.missed),
+            "late_p50_us": _rounded(report.late_p50 * 1e6, 1),
+            "late_p99_us": _rounded(report.late_p99 * 1e6, 1),
+        },
+        "logs": {"rrd": _existing(run, "rrd"), "tlog": _existing(run, "tlog")},
+        "shortcomings": [failure] if failure else director.shortcomings(),
+    }
+
+
+def summarise(run: Run, director: Director, servo: ServoReport | None, failure: str, *, as_json: bool) -> int:
+    """Print the summary and return the exit code: 0 when the mission's criteria hold, else 1."""
+    figures = summary(run, director, servo, failure)
+    if as_json:
+        print(json.dumps(figures))
+    else:
+        print(_table(figures))
+    sys.stdout.flush()
+    return 0 if figures["completed"] else 1
+
+
+def _table(figures: dict[str, object]) -> str:
+    servo, logs, missing = figures["servo"], figures["logs"], figures["shortcomings"]
+    assert isinstance(servo, dict) and isinstance(logs, dict) and isinstance(missing, list)
+    verdict = "completed" if figures["completed"] else "NOT completed: " + "; ".join(map(str, missing))
+    total = servo["ticks"] + servo["missed"]
+    share = 100.0 * servo["ticks"] / total if total else math.nan
+    rows = (
+        ("mission", f"{figures['mission']}: {verdict}"),
+        ("time", f"{figures['duration_s']} s"),
+        ("path", f"{figures['path_m']} m"),
+        ("position error", f"{figures['rms_error_m']} m RMS, {figures['final_error_m']} m at the target"),
+        ("largest force", f"{figures['max_force_n']} N"),
+        ("collisions", f"{figures['collisions']}"),
+        ("servo", f"{share:.2f} % of ticks at {servo['rate_hz']} Hz, late {servo['late_p50_us']} µs p50, "
+                  f"{servo['late_p99_us']} µs p99"),
+        ("recording", f"{logs['rrd']}"),
+        ("MAVLink log", f"{logs['tlog']}"),
+    )
+    return "\n".join(f"{name:<15} {value}" for name, value in rows)
+
+
+def _figures(director: Director, view: Snapshot) -> str:
+    parts = [director.stage.value]
+    if director.legs:
+        parts.append(f"point {min(director.leg + 1, director.legs)}/{director.legs}")
+    distance = director.target_distance()
+    if not math.isnan(distance):
+        parts.append(f"{distance:.1f} m to the target")
+    if view.pilot:
+        parts.append(f"force {math.hypot(*view.pilot.force):.1f} N")
+    return ", ".join(parts)
+
+
+def _words(event: Event) -> str:
+    sign = "!!" if event.severity == Severity.ALARM else "!"
+    return f"{sign} {event.source.decode()}: {event.text.decode(errors='replace')}"
+
+
+def _rounded(value: float, digits: int) -> float | None:
+    return round(value, digits) if math.isfinite(value) else None
+
+
+def _existing(run: Run, suffix: str) -> str | None:
+    path = run.recording if suffix == "rrd" else run.tlog
+    return str(path) if path.exists() else None

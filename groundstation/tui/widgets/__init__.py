@@ -1,0 +1,1 @@
+"""The instruments on the screens, one file each."""

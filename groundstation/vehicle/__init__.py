@@ -1,0 +1,1 @@
+"""The channel to the vehicle: transports, the setpoint gate, MAVSDK."""

@@ -1,0 +1,112 @@
+"""The gate: no setpoint leaves that was not given within the last 150 ms.
+
+MAVSDK re-sends its last offboard setpoint at 20 Hz from a thread of its own, whatever happened to the
+program that gave it. A hung pilot would fly on, with every failsafe of the vehicle satisfied. So MAVSDK's
+bytes pass here before they reach a socket, and a frame that steers passes only when it carries a setpoint
+that was authorised a moment ago.
+"""
+
+from __future__ import annotations
+
+import math
+import struct
+from collections import deque
+from collections.abc import Callable
+
+from groundstation.frames import Vector4, frd_from_flu
+
+SET_POSITION_TARGET_LOCAL_NED = 84
+# SET_ATTITUDE_TARGET, SET_POSITION_TARGET_GLOBAL_INT, MANUAL_CONTROL, RC_CHANNELS_OVERRIDE,
+# SET_ACTUATOR_CONTROL_TARGET: they steer too, and this program never means to send them.
+_NEVER = frozenset({82, 86, 69, 70, 139})
+
+_PAYLOAD = struct.Struct("<I11fHBBB")
+_FRAME_BODY_NED = 8
+_VELOCITY_AND_YAW_RATE = 1479
+_V2, _V1 = 0xFD, 0xFE
+_TOLERANCE = 1e-5
+
+
+class Gate:
+    """Decides for every outgoing frame whether it may leave. Called from MAVSDK's thread and from ours.
+
+    Args:
+        stale_s: Age from which an authorised setpoint no longer opens the gate, s.
+        clock: Monotonic seconds.
+
+    Attributes:
+        sent: Setpoint frames that passed.
+        dropped: Steering frames that were kept back.
+    """
+
+    def __init__(self, stale_s: float, clock: Callable[[], float]) -> None:
+        self._stale_s = stale_s
+        self._clock = clock
+        self._authorised: deque[tuple[float, Vector4]] = deque(maxlen=8)
+        self.sent = 0
+        self.dropped = 0
+
+    def authorise(self, velocity: Vector4, made_t: float) -> bool:
+        """Let frames pass that carry this velocity (FLU, m/s and rad/s), while it is young.
+
+        Returns:
+            False when it is stale or not finite: then it must not be given to MAVSDK at all.
+        """
+        if self._clock() - made_t > self._stale_s or not all(map(math.isfinite, velocity)):
+            return False
+        self._authorised.append((made_t, frd_from_flu(velocity)))
+        return True
+
+    def close(self) -> None:
+        """Let no setpoint pass until another is authorised."""
+        self._authorised.clear()
+
+    def passes(self, frame: bytes) -> bool:
+        """Say whether a MAVLink frame may leave."""
+        number = message_number(frame)
+        if number == SET_POSITION_TARGET_LOCAL_NED:
+            if self._is_fresh(frame):
+                self.sent += 1
+                return True
+            self.dropped += 1
+            return False
+        if number in _NEVER:
+            self.dropped += 1
+            return False
+        return True
+
+    def _is_fresh(self, frame: bytes) -> bool:
+        """Say whether a setpoint frame carries a velocity authorised a moment ago, and nothing else."""
+        header = 10 if frame[0] == _V2 else 6
+        # MAVLink 2 cuts trailing zero bytes off the payload; put them back before reading it.
+        payload = frame[header : header + frame[1]].ljust(_PAYLOAD.size, b"\0")
+        values = _PAYLOAD.unpack(payload[: _PAYLOAD.size])
+        velocity = (*values[4:7], values[11])
+        if values[12] != _VELOCITY_AND_YAW_RATE or values[15] != _FRAME_BODY_NED:
+            return False
+        oldest = self._clock() - self._stale_s
+        return any(
+            made_t >= oldest
+            and all(abs(a - b) <= _TOLERANCE * max(1.0, abs(b)) for a, b in zip(velocity, given, strict=True))
+            for made_t, given in tuple(self._authorised)
+        )
+
+
+def message_number(frame: bytes) -> int:
+    """Return a frame's message id, or -1 where it is not MAVLink."""
+    if len(frame) >= 12 and frame[0] == _V2:
+        return frame[7] | frame[8] << 8 | frame[9] << 16
+    if len(frame) >= 8 and frame[0] == _V1:
+        return frame[5]
+    return -1
+
+
+def split_frames(data: bytes) -> list[bytes]:
+    """Cut well-formed bytes, as MAVSDK hands them out, into MAVLink frames."""
+    frames: list[bytes] = []
+    start = 0
+    while start + 8 <= len(data):
+        length = data[start + 1] + (8 if data[start] == _V1 else 12 + 13 * (data[start + 2] & 1))
+        frames.append(data[start : start + length])
+        start += length
+    return frames

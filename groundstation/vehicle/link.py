@@ -1,0 +1,283 @@
+"""The link process: the only one that speaks to the vehicle.
+
+bus ──setpoint──► OffboardStream ──► MAVSDK ──► gate ──► transport ──► vehicle
+bus ◄──state, status, answers, events── VehicleView, Commander ◄── MAVSDK ◄──┘
+"""
+
+from __future__ import annotations
+
+import math
+import queue
+import time
+from collections import deque
+
+import mavsdk
+from mavsdk import Configuration, Mavsdk, System
+
+from groundstation.bus import Bus
+from groundstation.child import Lifeline, run_child
+from groundstation.frames import Vector4
+from groundstation.messages import (
+    ANSWER_TEXT,
+    COMMAND,
+    COMMAND_ANSWER,
+    SETPOINT,
+    VEHICLE_STATE,
+    VEHICLE_STATUS,
+    CommandAnswer,
+    CommandKind,
+    Severity,
+    VehicleStatus,
+    fit,
+)
+from groundstation.run import Run
+from groundstation.vehicle.commander import STEERING, Commander
+from groundstation.vehicle.gate import Gate
+from groundstation.vehicle.offboard import Act, OffboardStream, Seen, Stream
+from groundstation.vehicle.pump import Pump
+from groundstation.vehicle.round_trip import RoundTrip
+from groundstation.vehicle.telemetry import Notes, VehicleView
+from groundstation.vehicle.tlog import TlogWriter
+from groundstation.vehicle.transport import TransportError, UrlError, open_transport, parse_url
+
+ROLE = "link"
+# MAV_COMP_ID_MISSIONPLANNER: the ground station's usual component, with the usual GCS system id.
+_SYSTEM_ID, _COMPONENT_ID = 255, 190
+_TURN_S = 0.0005
+_STATUS_S = 0.1
+_DISCOVERY_S = 0.05
+_DEFAULT_TAKEOFF_M = 2.0
+_REASON_S = 1.5
+_LEAVE_S = 0.2
+
+_PILOTS = frozenset({CommandKind.ENGAGE, CommandKind.DISENGAGE})
+
+
+class Link:
+    """One vehicle's link: `turn` is one pass of its loop.
+
+    Args:
+        run: The run it belongs to.
+        bus: Where records come from and go to.
+        mav: MAVSDK with the pump connected.
+        pump: Moves the bytes.
+        gate: Keeps stale setpoints back.
+        notes: What other threads want told as events.
+    """
+
+    def __init__(self, run: Run, bus: Bus, mav: Mavsdk, pump: Pump, gate: Gate, *, notes: Notes) -> None:
+        self._run, self._bus, self._mav, self._pump, self._gate = run, bus, mav, pump, gate
+        self._notes = notes
+        self._setpoints = bus.subscriber(SETPOINT, depth=1)
+        self._commands = bus.subscriber(COMMAND)
+        self._states = bus.publisher(VEHICLE_STATE)
+        self._statuses = bus.publisher(VEHICLE_STATUS)
+        self._answers = bus.publisher(COMMAND_ANSWER)
+        self._status = VehicleStatus(rtt=math.nan, battery=math.nan, voltage=math.nan)
+        self._view = VehicleView(notes, time.monotonic)
+        self._stream = OffboardStream(run.settings.safety.setpoint_stale_s)
+        self._offboard_answers: queue.SimpleQueue[tuple[bool, str]] = queue.SimpleQueue()
+        self._commander: Commander | None = None
+        self._round_trip: RoundTrip | None = None
+        self._given = 0
+        self._denials: deque[tuple[float, str]] = deque(maxlen=4)
+        self._next_status = 0.0
+        self._next_discovery = 0.0
+        self._silent = False
+
+    def turn(self) -> None:
+        """Pass records once around; never waits."""
+        now = time.monotonic()
+        if self._commander is None:
+            self._discover(now)
+        else:
+            self._fly(now)
+            self._collect_answers(now)
+        for command in self._commands.drain():
+            self._obey(command.number, CommandKind(command.kind), now)
+        if self._view.fresh:
+            self._states.send(self._view.take_state())
+        self._pass_on_notes(now)
+        if now >= self._next_status or self._changed():
+            self._next_status = now + _STATUS_S
+            self._publish_status(now)
+
+    def leave(self) -> None:
+        """End the stream if there is one, and give the vehicle the word to hold before the link goes."""
+        if self._stream.state in {Stream.STARTING, Stream.FLYING} and self._commander:
+            self._gate.close()
+            self._commander.do(CommandKind.HOLD)
+            time.sleep(_LEAVE_S)
+
+    def _discover(self, now: float) -> None:
+        if now < self._next_discovery:
+            return
+        self._next_discovery = now + _DISCOVERY_S
+        system = next((system for system in self._mav.get_systems() if system.has_autopilot()), None)
+        if system is not None:
+            self._attach(system)
+
+    def _attach(self, system: System) -> None:
+        mission = self._run.mission
+        altitude = mission.takeoff_altitude_m if mission else _DEFAULT_TAKEOFF_M
+        self._commander = Commander(system, altitude, lambda ok, why: self._offboard_answers.put((ok, why)))
+        self._round_trip = RoundTrip(system, time.monotonic)
+        self._view.attach(system, self._run.settings.rates.telemetry)
+        self._status.system_id = system.get_system_id()
+        self._bus.event(Severity.INFO, f"Vehicle {self._status.system_id} found on {self._run.url}.")
+
+    def _fly(self, now: float) -> None:
+        """Stream the newest setpoint, or end the stream."""
+        setpoint = self._setpoints.newest()
+        if setpoint is None:
+            return
+        seen = Seen(now, bool(setpoint.active), now - setpoint.t, self._view.mode, self._view.mode_t)
+        act, why = self._stream.step(seen)
+        self._do(act, why)
+        streaming = self._stream.state in {Stream.STARTING, Stream.FLYING}
+        if streaming and setpoint.number != self._given:
+            self._given = setpoint.number
+            self._give(tuple(setpoint.velocity), setpoint.t)
+        if act is Act.START and self._commander:
+            self._commander.start_offboard()
+
+    def _give(self, velocity: Vector4, made_t: float) -> None:
+        if self._commander and self._gate.authorise(velocity, made_t):
+            self._commander.fly(velocity)
+
+    def _do(self, act: Act, why: str) -> None:
+        if act in {Act.CLOSE, Act.CLOSE_AND_HOLD}:
+            self._gate.close()
+        if act is Act.CLOSE_AND_HOLD and self._commander:
+            self._commander.do(CommandKind.HOLD)
+        if why:
+            self._bus.event(Severity.ALARM, f"{why[0].upper()}{why[1:]}.")
+
+    def _obey(self, number: int, kind: CommandKind, now: float) -> None:
+        if kind in _PILOTS:
+            return
+        if self._commander is None:
+            self._answer(number, kind, ok=False, text="no vehicle is connected", now=now)
+            return
+        if kind in STEERING:
+            self._stream.end()
+            self._gate.close()
+        self._commander.do(kind, number)
+
+    def _collect_answers(self, now: float) -> None:
+        commander = self._commander
+        while commander and not commander.answers.empty():
+            number, kind, ok, why = commander.answers.get()
+            if number:
+                self._answer(number, kind, ok=ok, text=why, now=now)
+            elif not ok:
+                self._bus.event(
+                    Severity.ALARM, f"The vehicle was told to hold, but {why}; its own failsafe remains."
+                )
+        while not self._offboard_answers.empty():
+            ok, why = self._offboard_answers.get()
+            if ok:
+                self._stream.accepted(now)
+            elif self._stream.state is Stream.STARTING:
+                self._do(*self._stream.refused(self._with_reason(why, now)))
+
+    def _answer(self, number: int, kind: CommandKind, *, ok: bool, text: str, now: float) -> None:
+        words = "" if ok else f"{kind.name.capitalize()} refused: {self._with_reason(text, now)}."
+        answer = CommandAnswer(t=now, number=number, kind=int(kind), ok=int(ok))
+        answer.text = fit(words, ANSWER_TEXT)
+        self._answers.send(answer)
+        self._bus.event(
+            Severity.INFO if ok else Severity.WARNING, words or f"{kind.name.capitalize()} accepted."
+        )
+
+    def _with_reason(self, why: str, now: float) -> str:
+        """Add what the vehicle itself said in the last moment; its words are better than a result code."""
+        said = [text for t, text in self._denials if now - t < _REASON_S]
+        return f"{why} ({said[-1]})" if said else why
+
+    def _pass_on_notes(self, now: float) -> None:
+        while not self._notes.empty():
+            severity, text = self._notes.get()
+            if severity is not Severity.INFO:
+                self._denials.append((now, text.rstrip(".")))
+            self._bus.event(severity, text)
+
+    def _changed(self) -> bool:
+        status, view = self._status, self._view
+        return (status.armed, status.in_air, status.mode, status.streaming) != (
+            int(view.armed),
+            int(view.in_air),
+            int(view.mode),
+            int(self._stream.state),
+        )
+
+    def _publish_status(self, now: float) -> None:
+        status, view = self._status, self._view
+        status.t = now
+        status.heard_t = self._pump.heard_t
+        status.loss = self._pump.loss()
+        if self._round_trip:
+            self._round_trip.ask()
+            status.rtt = self._round_trip.seconds
+        status.battery, status.voltage = view.battery, view.voltage
+        status.sent, status.dropped = self._gate.sent, self._gate.dropped
+        status.health = int(view.health)
+        status.connected = int(view.connected())
+        status.armed, status.in_air = int(view.armed), int(view.in_air)
+        status.mode, status.streaming = int(view.mode), int(self._stream.state)
+        self._statuses.send(status)
+        self._watch_silence(now)
+
+    def _watch_silence(self, now: float) -> None:
+        silence = now - self._pump.heard_t
+        silent = bool(self._pump.heard_t) and silence > self._run.settings.safety.link_warning_s
+        if silent != self._silent:
+            self._silent = silent
+            words = f"The vehicle is silent for {silence:.1f} s." if silent else "The vehicle is heard again."
+            self._bus.event(Severity.ALARM if silent else Severity.INFO, words)
+
+
+def body(run: Run, bus: Bus, lifeline: Lifeline) -> None:
+    """Run the link until the lifeline ends."""
+    notes: Notes = queue.SimpleQueue()
+    mavsdk.log_subscribe(lambda level, text, _file, _line: _note_log(notes, int(level), text))
+    try:
+        transport = open_transport(parse_url(run.url))
+    except (UrlError, TransportError) as error:
+        raise SystemExit(str(error)) from error
+    gate = Gate(run.settings.safety.setpoint_stale_s, time.monotonic)
+    tlog = _open_tlog(run, notes)
+    pump = Pump(transport, gate, tlog, time.monotonic)
+    mav = Mavsdk(Configuration.create_manual(_SYSTEM_ID, _COMPONENT_ID, always_send_heartbeats=True))
+    pump.start(mav)
+    link = Link(run, bus, mav, pump, gate, notes=notes)
+    try:
+        while lifeline.holds():
+            link.turn()
+            time.sleep(_TURN_S)
+        link.leave()
+    finally:
+        pump.stop()
+        mav.destroy()
+        if tlog:
+            tlog.close()
+        mavsdk.log_unsubscribe()
+
+
+def _open_tlog(run: Run, notes: Notes) -> TlogWriter | None:
+    try:
+        return TlogWriter(run.tlog, lambda words: notes.put((Severity.ALARM, words)))
+    except OSError as error:
+        notes.put((Severity.ALARM, f"No MAVLink log: {run.tlog} cannot be written ({error.strerror})."))
+        return None
+
+
+def _note_log(notes: Notes, level: int, text: str) -> bool:
+    """Keep MAVSDK's own lines off the terminal; its warnings become events."""
+    if level >= int(mavsdk.LogLevel.WARN):
+        notes.put((Severity.WARNING, f"MAVSDK: {text}"))
+    return True
+
+
+if __name__ == "__main__":
+    run_child(ROLE, body)

@@ -1,0 +1,121 @@
+"""When setpoints stream to the vehicle, and what ends it: a pure state machine.
+
+    IDLE ──fresh active setpoint──► STARTING ──heartbeat says offboard──► FLYING
+      ▲                                │                                    │
+      └── setpoint inactive ── ENDED ◄─┴── any end ◄────────────────────────┘
+
+What has ended does not resume by itself: it takes an inactive setpoint, hence a fresh act of the operator.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import IntEnum
+
+from groundstation.messages import FlightMode
+
+START_TIMEOUT_S = 3.0
+
+
+class Stream(IntEnum):
+    """State of the stream; `VehicleStatus.streaming` carries it."""
+
+    IDLE = 0
+    STARTING = 1
+    FLYING = 2
+    ENDED = 3
+
+
+class Act(IntEnum):
+    """What the link must do after a step, besides sending the setpoint."""
+
+    NOTHING = 0
+    START = 1
+    CLOSE = 2
+    CLOSE_AND_HOLD = 3
+
+
+@dataclass(frozen=True, slots=True)
+class Seen:
+    """What a step is decided on.
+
+    Attributes:
+        now: Monotonic s.
+        active: The newest setpoint asks to be flown.
+        age: Its age, s; infinite before the first.
+        mode: The vehicle's mode as of its last heartbeat.
+        mode_t: When that heartbeat came.
+    """
+
+    now: float
+    active: bool
+    age: float
+    mode: FlightMode
+    mode_t: float
+
+
+@dataclass(slots=True)
+class OffboardStream:
+    """Holds the state between steps.
+
+    Args:
+        stale_s: Age from which a setpoint is not flown and the pilot counts as silent, s.
+    """
+
+    stale_s: float
+    state: Stream = Stream.IDLE
+    accepted_t: float | None = None
+    _started_t: float = 0.0
+
+    def step(self, seen: Seen) -> tuple[Act, str]:
+        """Advance and return what to do and, when a stream ended against the pilot's wish, why."""
+        fresh = seen.active and seen.age <= self.stale_s
+        if self.state is Stream.ENDED:
+            if not seen.active:
+                self.state = Stream.IDLE
+            return Act.NOTHING, ""
+        if self.state is Stream.IDLE:
+            if not fresh:
+                return Act.NOTHING, ""
+            self.state, self._started_t, self.accepted_t = Stream.STARTING, seen.now, None
+            return Act.START, ""
+        if not seen.active:
+            return self._end(Act.CLOSE_AND_HOLD)
+        if not fresh:
+            return self._end(
+                Act.CLOSE_AND_HOLD, f"pilot silent for {seen.age * 1000:.0f} ms; the vehicle holds"
+            )
+        return self._starting(seen) if self.state is Stream.STARTING else self._flying(seen)
+
+    def accepted(self, now: float) -> None:
+        """The vehicle acknowledged offboard; only a heartbeat from now on proves it."""
+        self.accepted_t = now
+
+    def end(self) -> None:
+        """The operator commanded another mode: the stream makes room and sends no hold after it."""
+        if self.state in {Stream.STARTING, Stream.FLYING}:
+            self.state = Stream.ENDED
+
+    def refused(self, why: str) -> tuple[Act, str]:
+        """The vehicle denied offboard."""
+        return self._end(Act.CLOSE, f"offboard refused: {why}")
+
+    def _starting(self, seen: Seen) -> tuple[Act, str]:
+        proven = self.accepted_t is not None and seen.mode_t > self.accepted_t
+        if proven and seen.mode is FlightMode.OFFBOARD:
+            self.state = Stream.FLYING
+        elif seen.now - self._started_t > START_TIMEOUT_S:
+            return self._end(Act.CLOSE_AND_HOLD, "the vehicle did not confirm offboard within 3 s; it holds")
+        return Act.NOTHING, ""
+
+    def _flying(self, seen: Seen) -> tuple[Act, str]:
+        if seen.mode is not FlightMode.OFFBOARD:
+            # Someone else flies now: a pilot with a transmitter, another station, a failsafe. Never seize it back.
+            return self._end(
+                Act.CLOSE, f"the vehicle went to {seen.mode.name} by itself or by another; not fought"
+            )
+        return Act.NOTHING, ""
+
+    def _end(self, act: Act, why: str = "") -> tuple[Act, str]:
+        self.state = Stream.ENDED
+        return act, why

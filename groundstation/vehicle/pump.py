@@ -1,0 +1,125 @@
+"""The pump: moves bytes between transport and MAVSDK, through gate and log, and watches the link's health.
+
+MAVSDK has a `raw://` connection only, so no byte reaches the vehicle but through here.
+"""
+
+from __future__ import annotations
+
+import threading
+from collections import deque
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+from pymavlink.dialects.v20 import common as mavlink
+
+from groundstation.vehicle.gate import Gate, split_frames
+from groundstation.vehicle.tlog import TlogWriter
+from groundstation.vehicle.transport import Transport
+
+if TYPE_CHECKING:
+    from mavsdk import Mavsdk
+
+_WINDOW_S = 5.0
+
+
+class Losses:
+    """Counts the vehicle's lost frames by the gaps in its sequence numbers over the last seconds."""
+
+    def __init__(self) -> None:
+        self._next: dict[tuple[int, int], int] = {}
+        self._marks: deque[tuple[float, int]] = deque()
+        self._lost = 0
+
+    def count(self, now: float, system: int, component: int, sequence: int) -> None:
+        """Take note of a frame (sequence numbers run modulo 256)."""
+        source = (system, component)
+        lost = (sequence - self._next.get(source, sequence)) % 256
+        # A jump of more than half the range is a repeated or late frame, not 200 lost ones.
+        lost = 0 if lost > 128 else lost
+        self._next[source] = (sequence + 1) % 256
+        self._marks.append((now, lost))
+        self._lost += lost
+
+    def share(self, now: float) -> float:
+        """Return lost / (lost + received) over the window, 0 to 1."""
+        while self._marks and self._marks[0][0] < now - _WINDOW_S:
+            self._lost -= self._marks.popleft()[1]
+        received = len(self._marks)
+        return self._lost / (received + self._lost) if received else 0.0
+
+
+class Pump:
+    """Runs the bytes both ways from `start` to `stop`.
+
+    Args:
+        transport: The way to the vehicle.
+        gate: Passes or keeps outgoing frames.
+        tlog: Where frames are logged, or None.
+        clock: Monotonic seconds.
+
+    Attributes:
+        heard_t: When the last valid frame came, 0 before the first.
+    """
+
+    def __init__(
+        self, transport: Transport, gate: Gate, tlog: TlogWriter | None, clock: Callable[[], float]
+    ) -> None:
+        self._transport = transport
+        self._gate = gate
+        self._tlog = tlog
+        self._clock = clock
+        self._parser = mavlink.MAVLink(None)
+        self._parser.robust_parsing = True
+        self._losses = Losses()
+        self._lock = threading.Lock()
+        self._running = True
+        self._thread: threading.Thread | None = None
+        self.heard_t = 0.0
+
+    def start(self, mavsdk: Mavsdk) -> None:
+        """Connect MAVSDK and begin."""
+        mavsdk.add_any_connection("raw://")
+        mavsdk.subscribe_raw_bytes_to_be_sent(self._send)
+        self._thread = threading.Thread(target=self._receive_all, args=(mavsdk,), name="pump", daemon=True)
+        self._thread.start()
+
+    def stop(self) -> None:
+        """End both ways. Before MAVSDK is destroyed: bytes passed to it afterwards crash the process."""
+        self._running = False
+        if self._thread is not None:
+            self._thread.join()
+        self._transport.close()
+
+    def loss(self) -> float:
+        """Return the share of frames lost in the last seconds, 0 to 1."""
+        with self._lock:
+            return self._losses.share(self._clock())
+
+    def _send(self, data: bytes) -> None:
+        if not self._running:
+            return
+        for frame in split_frames(data):
+            if self._gate.passes(frame):
+                self._transport.send(frame)
+                if self._tlog:
+                    self._tlog.write(frame)
+
+    def _receive_all(self, mavsdk: Mavsdk) -> None:
+        while self._running:
+            data = self._transport.receive()
+            if data and self._running:
+                mavsdk.pass_received_raw_bytes(data)
+                self._watch(data)
+
+    def _watch(self, data: bytes) -> None:
+        now = self._clock()
+        for message in self._parser.parse_buffer(data) or ():
+            if message.get_type() == "BAD_DATA":
+                continue
+            self.heard_t = now
+            with self._lock:
+                self._losses.count(
+                    now, message.get_srcSystem(), message.get_srcComponent(), message.get_seq()
+                )
+            if self._tlog:
+                self._tlog.write(bytes(message.get_msgbuf()))

@@ -1,0 +1,296 @@
+"""The bytes' way to the vehicle: UDP, TCP and serial ports, opened from a URL, all ours to close.
+
+MAVSDK never sees a socket: see `gate.py` for why.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import re
+import socket
+import time
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal, Protocol
+
+from groundstation.errors import InputError
+
+if TYPE_CHECKING:
+    import serial
+
+Scheme = Literal["udpin", "udpout", "tcpout", "serial"]
+
+_NETWORK = re.compile(r"^(udpin|udpout|tcpout)://([^:/\s]+):(\d{1,5})$")
+_SERIAL = re.compile(r"^serial://(/[^:\s]+|[A-Za-z]+\d+):(\d{3,8})$")
+_DATAGRAM = 65_536
+_PEER_SILENT_S = 5.0
+_RECONNECT_S = 1.0
+
+
+class UrlError(InputError):
+    """A vehicle's URL is wrong; the message says how it should look."""
+
+
+class TransportError(Exception):
+    """The way to the vehicle cannot be opened; the message says why and what to do."""
+
+
+@dataclass(frozen=True)
+class Url:
+    """A parsed vehicle URL: `place` is a host or a serial port, `number` a port or a baud rate."""
+
+    scheme: Scheme
+    place: str
+    number: int
+
+
+class Transport(Protocol):
+    """Moves bytes. Neither call raises for what a link may do at any time: silence, loss, a lost peer."""
+
+    def receive(self) -> bytes:
+        """Return what came, or nothing after at most 0.1 s."""
+        ...
+
+    def send(self, data: bytes) -> None:
+        """Send, or lose, some bytes at once."""
+        ...
+
+    def close(self) -> None:
+        """Let go of the port."""
+        ...
+
+
+def parse_url(text: str) -> Url:
+    """Parse `udpin://HOST:PORT`, `udpout://HOST:PORT`, `tcpout://HOST:PORT` or `serial:///dev/PORT:BAUD`.
+
+    Raises:
+        UrlError: It is none of these.
+    """
+    found = _NETWORK.match(text) or _SERIAL.match(text)
+    if found is None:
+        raise UrlError(
+            f"{text!r} is not a vehicle's URL; use udpin://0.0.0.0:14540, udpout://HOST:PORT, "
+            "tcpout://HOST:PORT or serial:///dev/ttyUSB0:57600."
+        )
+    if found.re is _SERIAL:
+        return Url("serial", found[1], int(found[2]))
+    number = int(found[3])
+    if not 0 < number < 65_536:
+        raise UrlError(f"{text!r}: port {number} does not exist; use 1 to 65535.")
+    scheme: Scheme = "udpin" if found[1] == "udpin" else "udpout" if found[1] == "udpout" else "tcpout"
+    return Url(scheme, found[2], number)
+
+
+def open_transport(url: Url) -> Transport:
+    """Open the way to the vehicle.
+
+    Raises:
+        TransportError: With where, why and what to do.
+    """
+    if url.scheme == "udpin":
+        return UdpIn(url)
+    if url.scheme == "udpout":
+        return UdpOut(url)
+    if url.scheme == "tcpout":
+        return TcpOut(url)
+    return SerialPort(url)
+
+
+class UdpIn:
+    """Listens on a port and answers whoever spoke first, until that one is silent for long."""
+
+    def __init__(self, url: Url) -> None:
+        self._socket = _udp_socket()
+        self._peer: tuple[str, int] | None = None
+        self._heard = 0.0
+        try:
+            self._socket.bind((url.place, url.number))
+        except OSError as error:
+            self._socket.close()
+            raise TransportError(
+                f"udpin://{url.place}:{url.number}: cannot listen ({error.strerror}); "
+                "end the other program on this port or choose another."
+            ) from error
+
+    def receive(self) -> bytes:
+        """See `Transport`."""
+        try:
+            data, peer = self._socket.recvfrom(_DATAGRAM)
+        except OSError:
+            return b""
+        now = time.monotonic()
+        if peer != self._peer and now - self._heard > _PEER_SILENT_S:
+            self._peer = peer
+        if peer != self._peer:
+            return b""
+        self._heard = now
+        return data
+
+    def send(self, data: bytes) -> None:
+        """See `Transport`."""
+        if self._peer is not None:
+            with contextlib.suppress(OSError):
+                self._socket.sendto(data, self._peer)
+
+    def close(self) -> None:
+        """See `Transport`."""
+        self._socket.close()
+
+
+class UdpOut:
+    """Speaks to a fixed address and listens to its answers."""
+
+    def __init__(self, url: Url) -> None:
+        self._socket = _udp_socket()
+        try:
+            self._socket.connect((url.place, url.number))
+        except OSError as error:
+            self._socket.close()
+            raise TransportError(
+                f"udpout://{url.place}:{url.number}: no way there ({error.strerror}); check the address."
+            ) from error
+
+    def receive(self) -> bytes:
+        """See `Transport`."""
+        try:
+            return self._socket.recv(_DATAGRAM)
+        except TimeoutError:
+            return b""
+        except OSError:
+            # The peer's port is closed (ICMP); do not spin on it.
+            time.sleep(0.05)
+            return b""
+
+    def send(self, data: bytes) -> None:
+        """See `Transport`."""
+        with contextlib.suppress(OSError):
+            self._socket.send(data)
+
+    def close(self) -> None:
+        """See `Transport`."""
+        self._socket.close()
+
+
+class TcpOut:
+    """Connects to a server, and again whenever the connection breaks."""
+
+    def __init__(self, url: Url) -> None:
+        self._address = (url.place, url.number)
+        self._socket: socket.socket | None = None
+        self._retry_t = 0.0
+        try:
+            self._connect()
+        except OSError as error:
+            raise TransportError(
+                f"tcpout://{url.place}:{url.number}: no answer ({error.strerror or error}); "
+                "check that the vehicle listens there."
+            ) from error
+
+    def receive(self) -> bytes:
+        """See `Transport`."""
+        connection = self._socket or self._reconnect()
+        if connection is None:
+            return b""
+        try:
+            data = connection.recv(_DATAGRAM)
+        except TimeoutError:
+            return b""
+        except OSError:
+            data = b""
+        if not data:
+            self.close()
+        return data
+
+    def send(self, data: bytes) -> None:
+        """See `Transport`."""
+        connection = self._socket
+        if connection is not None:
+            try:
+                connection.sendall(data)
+            except OSError:
+                self.close()
+
+    def close(self) -> None:
+        """See `Transport`."""
+        connection, self._socket = self._socket, None
+        if connection is not None:
+            connection.close()
+
+    def _connect(self) -> socket.socket:
+        connection = socket.create_connection(self._address, timeout=2.0)
+        connection.settimeout(0.1)
+        connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        self._socket = connection
+        return connection
+
+    def _reconnect(self) -> socket.socket | None:
+        time.sleep(0.1)
+        now = time.monotonic()
+        if now < self._retry_t:
+            return None
+        self._retry_t = now + _RECONNECT_S
+        with contextlib.suppress(OSError):
+            return self._connect()
+        return None
+
+
+class SerialPort:
+    """A telemetry radio or a flight controller on a serial port, opened again when it comes back."""
+
+    def __init__(self, url: Url) -> None:
+        import serial
+
+        self._url = url
+        self._error = serial.SerialException
+        self._open = serial.Serial
+        self._port: serial.Serial | None = None
+        self._retry_t = 0.0
+        try:
+            self._port = self._open(url.place, url.number, timeout=0.1, write_timeout=0.1)
+        except (serial.SerialException, ValueError) as error:
+            raise TransportError(
+                f"serial://{url.place}:{url.number}: cannot be opened ({error}); check the cable, the name "
+                "and that you are in the group that owns it (dialout)."
+            ) from error
+
+    def receive(self) -> bytes:
+        """See `Transport`."""
+        port = self._port or self._reopen()
+        if port is None:
+            return b""
+        try:
+            return port.read(max(1, port.in_waiting))
+        except (self._error, OSError, TypeError):
+            self.close()
+            return b""
+
+    def send(self, data: bytes) -> None:
+        """See `Transport`."""
+        port = self._port
+        if port is not None:
+            try:
+                port.write(data)
+            except (self._error, OSError, TypeError):
+                self.close()
+
+    def close(self) -> None:
+        """See `Transport`."""
+        port, self._port = self._port, None
+        if port is not None:
+            with contextlib.suppress(self._error, OSError):
+                port.close()
+
+    def _reopen(self) -> serial.Serial | None:
+        time.sleep(0.1)
+        now = time.monotonic()
+        if now < self._retry_t:
+            return None
+        self._retry_t = now + _RECONNECT_S
+        with contextlib.suppress(self._error, OSError):
+            self._port = self._open(self._url.place, self._url.number, timeout=0.1, write_timeout=0.1)
+        return self._port
+
+
+def _udp_socket() -> socket.socket:
+    udp = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+    udp.settimeout(0.1)
+    return udp

@@ -1,0 +1,143 @@
+"""Loss counting, the MAVLink log, and the pump with the real MAVSDK on one side and a socket on the other."""
+
+import math
+import socket
+import struct
+import time
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from pymavlink import mavutil
+from pymavlink.dialects.v20 import common as mavlink
+
+from groundstation.vehicle.pump import Losses
+from groundstation.vehicle.tlog import TlogWriter
+
+
+def count(sequence):
+    losses = Losses()
+    for number in sequence:
+        losses.count(1.0, 1, 1, number % 256)
+    return losses
+
+
+def test_no_gap_no_loss():
+    assert count(range(600)).share(1.0) == 0.0
+
+
+def test_gaps_are_lost_frames():
+    assert math.isclose(count([0, 1, 3, 4, 5, 6, 9, 10]).share(1.0), 3 / 11)
+
+
+def test_a_gap_over_the_wrap_is_counted():
+    assert math.isclose(count([254, 1]).share(1.0), 2 / 4)
+
+
+def test_a_repeated_or_late_frame_is_no_loss():
+    assert count([5, 6, 6, 5]).share(1.0) == 0.0
+
+
+def test_sources_are_counted_apart():
+    losses = Losses()
+    for number in range(10):
+        losses.count(1.0, 1, 1, number)
+        losses.count(1.0, 1, 100, number)
+    assert losses.share(1.0) == 0.0
+
+
+def test_old_losses_are_forgotten():
+    losses = count([0, 9])
+    assert losses.share(1.0) > 0.5
+    assert losses.share(10.0) == 0.0
+
+
+@given(st.lists(st.integers(0, 255), max_size=60))
+def test_the_share_is_a_share(sequence):
+    assert 0.0 <= count(sequence).share(1.0) <= 1.0
+
+
+def test_the_log_is_read_by_pymavlink(tmp_path):
+    told = []
+    path = tmp_path / "flight.tlog"
+    writer = TlogWriter(path, told.append)
+    link = mavlink.MAVLink(None, srcSystem=1, srcComponent=1)
+    for _ in range(300):
+        writer.write(bytes(link.heartbeat_encode(2, 12, 0, 0, 4).pack(link)))
+    writer.close()
+    assert not told
+    (stamp,) = struct.unpack(">Q", path.read_bytes()[:8])
+    assert abs(stamp * 1e-6 - time.time()) < 60
+    log = mavutil.mavlink_connection(str(path))
+    messages = []
+    while (message := log.recv_match()) is not None:
+        messages.append(message)
+    log.close()
+    assert len(messages) == 300
+    assert messages[0].get_type() == "HEARTBEAT"
+
+
+def test_a_log_that_exists_is_not_overwritten(tmp_path):
+    path = tmp_path / "flight.tlog"
+    path.write_bytes(b"precious")
+    with pytest.raises(FileExistsError):
+        TlogWriter(path, lambda _: None)
+    assert path.read_bytes() == b"precious"
+
+
+def test_a_full_disk_is_told_once_and_stops_nothing():
+    from pathlib import Path
+
+    full = Path("/dev/full")
+    if not full.exists():
+        pytest.skip("this system has no /dev/full")
+    told = []
+
+    class Full(type(full)):
+        def open(self, _mode, **options):
+            return super().open("wb", **options)
+
+    writer = TlogWriter(Full(full), told.append)
+    for _ in range(1000):
+        writer.write(b"frame")
+    writer.close()
+    assert len(told) == 1
+    assert "free the disk" in told[0]
+
+
+def test_mavsdk_is_heard_through_the_pump():
+    from mavsdk import Configuration, Mavsdk
+
+    from groundstation.vehicle.gate import Gate
+    from groundstation.vehicle.pump import Pump
+    from groundstation.vehicle.transport import Url, open_transport
+
+    vehicle = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+    vehicle.bind(("127.0.0.1", 0))
+    vehicle.settimeout(10)
+    pump = Pump(
+        open_transport(Url("udpout", "127.0.0.1", vehicle.getsockname()[1])),
+        Gate(0.15, time.monotonic),
+        None,
+        time.monotonic,
+    )
+    mav = Mavsdk(Configuration.create_manual(255, 190, True))
+    pump.start(mav)
+    try:
+        parser = mavlink.MAVLink(None)
+        parser.robust_parsing = True
+        data, peer = vehicle.recvfrom(1000)
+        (heartbeat,) = parser.parse_buffer(data)
+        assert (heartbeat.get_srcSystem(), heartbeat.get_srcComponent()) == (255, 190)
+        link = mavlink.MAVLink(None, srcSystem=1, srcComponent=1)
+        deadline = time.monotonic() + 20
+        while not mav.get_systems() and time.monotonic() < deadline:
+            vehicle.sendto(bytes(link.heartbeat_encode(2, 12, 209, 0, 4).pack(link)), peer)
+            time.sleep(0.1)
+        assert [system.has_autopilot() for system in mav.get_systems()] == [True]
+        assert pump.heard_t > 0
+        assert pump.loss() == 0.0
+    finally:
+        pump.stop()
+        mav.destroy()
+        vehicle.close()

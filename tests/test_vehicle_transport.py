@@ -1,0 +1,156 @@
+"""Transports over real sockets and a pty: there and back, peers, silence, breaks."""
+
+import os
+import pty
+import socket
+import time
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from groundstation.vehicle.transport import TransportError, Url, UrlError, open_transport, parse_url
+
+
+def received(transport, within_s=5.0) -> bytes:
+    deadline = time.monotonic() + within_s
+    while time.monotonic() < deadline:
+        if data := transport.receive():
+            return data
+    return b""
+
+
+def udp(port=0):
+    sock = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+    sock.bind(("127.0.0.1", port))
+    sock.settimeout(5)
+    return sock
+
+
+@pytest.mark.parametrize(
+    ("text", "url"),
+    [
+        ("udpin://0.0.0.0:14540", Url("udpin", "0.0.0.0", 14540)),
+        ("udpout://127.0.0.1:14550", Url("udpout", "127.0.0.1", 14550)),
+        ("tcpout://vehicle.local:5760", Url("tcpout", "vehicle.local", 5760)),
+        ("serial:///dev/ttyUSB0:57600", Url("serial", "/dev/ttyUSB0", 57600)),
+        ("serial://COM3:115200", Url("serial", "COM3", 115200)),
+    ],
+)
+def test_urls_by_hand(text, url):
+    assert parse_url(text) == url
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["", "udp://1.2.3.4:5", "udpin://", "udpin://0.0.0.0", "udpin://0.0.0.0:0", "udpin://0.0.0.0:70000",
+     "tcpout://a b:5", "serial:///dev/ttyUSB0", "serial:///dev/ttyUSB0:fast", "http://x:80", "udpin://h:1/path"],
+)  # fmt: skip
+def test_what_is_no_url_is_told_with_what_is(text):
+    with pytest.raises(UrlError, match="udpin://0.0.0.0:14540|does not exist"):
+        parse_url(text)
+
+
+@given(st.text(max_size=40))
+def test_any_text_parses_or_is_told(text):
+    try:
+        parse_url(text)
+    except UrlError as error:
+        assert str(error).endswith(".")
+
+
+def test_udpin_answers_who_spoke_first_and_ignores_others():
+    vehicle, stranger = udp(), udp()
+    probe = udp()
+    port = probe.getsockname()[1]
+    probe.close()
+    transport = open_transport(parse_url(f"udpin://127.0.0.1:{port}"))
+    try:
+        transport.send(b"to nobody yet")
+        vehicle.sendto(b"hello", ("127.0.0.1", port))
+        assert received(transport) == b"hello"
+        stranger.sendto(b"mine!", ("127.0.0.1", port))
+        vehicle.sendto(b"again", ("127.0.0.1", port))
+        assert received(transport) == b"again"
+        transport.send(b"answer")
+        assert vehicle.recv(100) == b"answer"
+    finally:
+        transport.close()
+        vehicle.close()
+        stranger.close()
+
+
+def test_udpin_on_a_port_in_use_is_told():
+    other = udp()
+    try:
+        with pytest.raises(TransportError, match="cannot listen"):
+            open_transport(Url("udpin", "127.0.0.1", other.getsockname()[1]))
+    finally:
+        other.close()
+
+
+def test_udpout_speaks_first_and_survives_a_closed_port():
+    vehicle = udp()
+    transport = open_transport(Url("udpout", "127.0.0.1", vehicle.getsockname()[1]))
+    try:
+        transport.send(b"hello")
+        data, peer = vehicle.recvfrom(100)
+        assert data == b"hello"
+        vehicle.sendto(b"answer", peer)
+        assert received(transport) == b"answer"
+        vehicle.close()
+        for _ in range(3):
+            transport.send(b"lost")
+            assert transport.receive() == b""
+    finally:
+        transport.close()
+
+
+def test_tcpout_reconnects():
+    server = socket.create_server(("127.0.0.1", 0))
+    server.settimeout(5)
+    transport = open_transport(Url("tcpout", "127.0.0.1", server.getsockname()[1]))
+    try:
+        connection, _ = server.accept()
+        transport.send(b"hello")
+        assert connection.recv(100) == b"hello"
+        connection.close()
+        received(transport, within_s=0.3)
+        received(transport, within_s=1.5)
+        connection, _ = server.accept()
+        connection.sendall(b"back")
+        assert received(transport) == b"back"
+        connection.close()
+    finally:
+        transport.close()
+        server.close()
+
+
+def test_tcpout_without_a_server_is_told():
+    server = socket.create_server(("127.0.0.1", 0))
+    port = server.getsockname()[1]
+    server.close()
+    with pytest.raises(TransportError, match="no answer"):
+        open_transport(Url("tcpout", "127.0.0.1", port))
+
+
+def test_serial_over_a_pty_there_back_and_unplugged():
+    controller, device = pty.openpty()
+    transport = open_transport(Url("serial", os.ttyname(device), 57600))
+    os.close(device)
+    try:
+        os.write(controller, b"hello")
+        assert received(transport) == b"hello"
+        transport.send(b"answer")
+        assert os.read(controller, 100) == b"answer"
+        os.close(controller)
+        for _ in range(3):
+            assert transport.receive() == b""
+            transport.send(b"lost")
+    finally:
+        transport.close()
+
+
+def test_a_serial_port_that_is_not_there_is_told():
+    with pytest.raises(TransportError, match="dialout"):
+        open_transport(Url("serial", "/dev/ttyNOSUCH9", 57600))

@@ -35,7 +35,7 @@ def fly(asked: argparse.Namespace) -> int:
         if asked.headless:
             from groundstation.headless import fly_headless
 
-            return fly_headless(run, bus, supervisor, as_json=asked.json)
+            return fly_headless(run, bus, supervisor, as_json=asked.json, seed=asked.seed)
         from groundstation.tui.app import fly_on_screen
 
         return fly_on_screen(run, bus, supervisor)
@@ -50,6 +50,8 @@ def plan(asked: argparse.Namespace) -> Run:
     settings = load_settings(asked.config)
     path = _mission_path(asked)
     mission = _with_vehicle(load_mission(path), asked) if path else None
+    if mission and asked.sim:
+        _check_airframe(mission.vehicle.airframe)
     url = asked.connect or f"udpin://127.0.0.1:{free_port()}"
     parse_url(url)
     now = datetime.datetime.now().astimezone()
@@ -97,6 +99,17 @@ def _with_vehicle(mission: Mission, asked: argparse.Namespace) -> Mission:
         choice, airframe=asked.airframe or choice.airframe, model=asked.model or choice.model
     )
     return msgspec.structs.replace(mission, vehicle=choice)
+
+
+def _check_airframe(name: str) -> None:
+    """Refuse an airframe before its simulator is started."""
+    from sim.airframe import load_airframe
+    from sim.scenario import ScenarioError
+
+    try:
+        load_airframe(name)
+    except ScenarioError as error:
+        raise InputError(str(error)) from error
 
 
 def _sim_options(asked: argparse.Namespace) -> tuple[str, ...]:

@@ -20,7 +20,7 @@ from groundstation.pilot.mapping import RateMapping
 from groundstation.processes import Supervisor
 from groundstation.run import Run
 from groundstation.training.director import Director, Stage
-from groundstation.training.mission import Mission, MissionError
+from groundstation.training.mission import Mission
 from groundstation.training.summary import Narrator, summarise
 from sim.airframe import load_airframe
 from sim.operator import Operator

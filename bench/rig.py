@@ -1,0 +1,219 @@
+"""What the benchmarks stand on: the real program in a pseudo-terminal, a vehicle behind a tapped wire, a hand.
+
+Nothing here reaches into the program: the hand is the device's socket, the tap is the vehicle's UDP port, and the
+buttons are the same commands a screen sends.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import pty
+import select
+import socket
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+from pathlib import Path
+
+from drivers.stick import StickSender
+from groundstation.bus import Bus, run_folder
+from groundstation.console import Console, Snapshot
+from groundstation.messages import CommandKind, Phase
+from groundstation.processes import free_port
+
+ROOT = Path(__file__).resolve().parents[1]
+SETPOINT_ID = 84
+
+
+class Tap:
+    """A UDP relay between program and vehicle that notes when setpoint frames pass and what they carry.
+
+    Attributes:
+        setpoints: (time, payload) of every datagram with a setpoint, as it reached the vehicle's side.
+    """
+
+    def __init__(self) -> None:
+        self._program = _bound()
+        self._vehicle = _bound()
+        self._peers: dict[socket.socket, object] = {}
+        self._running = True
+        self.setpoints: list[tuple[float, bytes]] = []
+        self.program_port = int(self._program.getsockname()[1])
+        self.vehicle_port = int(self._vehicle.getsockname()[1])
+        self._thread = threading.Thread(target=self._relay, daemon=True)
+        self._thread.start()
+
+    def close(self) -> None:
+        """End the relay."""
+        self._running = False
+        self._thread.join()
+        self._program.close()
+        self._vehicle.close()
+
+    def _relay(self) -> None:
+        other = {self._program: self._vehicle, self._vehicle: self._program}
+        while self._running:
+            for ready in select.select([self._program, self._vehicle], [], [], 0.1)[0]:
+                data, peer = ready.recvfrom(65536)
+                now = time.monotonic()
+                self._peers[ready] = peer
+                if ready is self._program and data[0] == 0xFD and data[7] == SETPOINT_ID:
+                    self.setpoints.append((now, data[14 : 10 + data[1]].ljust(49, b"\0")))
+                if (to := self._peers.get(other[ready])) is not None:
+                    with contextlib.suppress(OSError):
+                        other[ready].sendto(data, to)
+
+
+def _bound() -> socket.socket:
+    udp = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+    udp.bind(("127.0.0.1", 0))
+    return udp
+
+
+class Hand:
+    """Holds a software handle at a place, repeating itself at 100 Hz; `put` returns when it went out."""
+
+    def __init__(self, path: str) -> None:
+        self._sender = StickSender(path)
+        self._lock = threading.Lock()
+        self._place = (0.0, 0.0, 0.0)
+        self._running = True
+        self._thread = threading.Thread(target=self._repeat, daemon=True)
+        self._thread.start()
+
+    def put(self, place: tuple[float, float, float]) -> float:
+        """Move the handle and return the moment it was sent, monotonic s."""
+        with self._lock:
+            self._place = place
+            now = time.monotonic()
+            self._sender.send(place, 0.0, 0, now)
+        return now
+
+    def close(self) -> None:
+        """Let go."""
+        self._running = False
+        self._thread.join()
+        self._sender.close()
+
+    def _repeat(self) -> None:
+        while self._running:
+            with self._lock:
+                self._sender.send(self._place, 0.0, 0, time.monotonic())
+            time.sleep(0.01)
+
+
+class Program:
+    """The real program in a pseudo-terminal of 200×60, and its bus.
+
+    Args:
+        arguments: Its command line.
+        environment: Additions to the environment.
+    """
+
+    def __init__(self, *arguments: str, columns: int = 200, rows: int = 60) -> None:
+        self.started = time.monotonic()
+        controller, terminal = pty.openpty()
+        _resize(terminal, columns, rows)
+        self.process = subprocess.Popen(
+            [sys.executable, "-m", "groundstation.cli", *arguments],
+            stdin=terminal, stdout=terminal, stderr=terminal, cwd=ROOT, start_new_session=True,
+            env=os.environ | {"TERM": "xterm-256color", "COLORTERM": "truecolor"},
+        )  # fmt: skip
+        os.close(terminal)
+        self._controller = controller
+        self._reader = threading.Thread(target=self._drain, daemon=True)
+        self.screen = bytearray()
+        self._reader.start()
+        self.bus = self._join()
+        self.console = Console(self.bus, "bench")
+
+    def type(self, keys: str) -> None:
+        """Type keys into the terminal."""
+        os.write(self._controller, keys.encode())
+
+    def until(self, condition, within_s: float, what: str) -> Snapshot:
+        """Wait until a snapshot meets a condition.
+
+        Raises:
+            SystemExit: It did not in time.
+        """
+        deadline = time.monotonic() + within_s
+        while time.monotonic() < deadline:
+            view = self.console.snapshot()
+            if condition(view):
+                return view
+            if self.process.poll() is not None:
+                raise SystemExit(f"the program ended ({self.process.returncode}) before: {what}")
+            time.sleep(0.005)
+        words = [event.text.decode(errors="replace") for event in self.console.snapshot().events][-8:]
+        raise SystemExit(f"within {within_s} s it did not happen: {what}; last events: {words}")
+
+    def engage(self) -> None:
+        """Arm, take off, and couple the hand."""
+        self.until(lambda view: view.status and view.status.connected and view.status.health & 64, 30, "armable")
+        for kind, condition, what in (
+            (CommandKind.ARM, lambda view: view.status.armed, "armed"),
+            (CommandKind.TAKEOFF, lambda view: view.vehicle and view.vehicle.position[2] > 1.6, "in the air"),
+            (CommandKind.ENGAGE, lambda view: view.pilot and view.pilot.phase == Phase.ENGAGED, "engaged"),
+        ):
+            self.console.command(kind)
+            self.until(condition, 20, what)
+
+    def close(self) -> None:
+        """End the program and leave its bus."""
+        if self.process.poll() is None:
+            self.process.terminate()
+            try:
+                self.process.wait(30)
+            except subprocess.TimeoutExpired:
+                self.process.kill()
+                self.process.wait()
+        self.bus.close()
+
+    def _join(self) -> Bus:
+        """Find the program's bus by the run folder that carries its process id."""
+        deadline = time.monotonic() + 20
+        while time.monotonic() < deadline:
+            prefix = run_folder(f"{self.process.pid}-").name
+            for folder in Path(tempfile.gettempdir()).glob(f"{prefix}*/run.json"):
+                return Bus(folder.parent.name.partition("-")[2], "bench")
+            time.sleep(0.005)
+        raise SystemExit("the program did not start:\n" + self.screen.decode(errors="replace")[-2000:])
+
+    def _drain(self) -> None:
+        with contextlib.suppress(OSError):
+            while data := os.read(self._controller, 65536):
+                self.screen += data
+                del self.screen[:-100_000]
+
+
+def _resize(terminal: int, columns: int, rows: int) -> None:
+    import fcntl
+    import struct
+    import termios
+
+    fcntl.ioctl(terminal, termios.TIOCSWINSZ, struct.pack("HHHH", rows, columns, 0, 0))
+
+
+@contextlib.contextmanager
+def vehicle(port: int, *options: str):
+    """Run a simulated vehicle that sends to a local port."""
+    command = [sys.executable, "-m", "sim", "--connect", f"udpout://127.0.0.1:{port}", "--quiet", *options]
+    process = subprocess.Popen(command, cwd=ROOT)
+    try:
+        yield process
+    finally:
+        process.terminate()
+        process.wait(10)
+
+
+def percentile(values: list[float], share: float) -> float:
+    """Return the value below which `share` (0 to 1) of all lie."""
+    ordered = sorted(values)
+    return ordered[min(len(ordered) - 1, int(share * len(ordered)))]
+
+
+__all__ = ["ROOT", "Hand", "Program", "Tap", "free_port", "percentile", "vehicle"]

@@ -1,0 +1,111 @@
+"""The command line as a user meets it: help at once, one sentence and exit 2 for what is wrong."""
+
+import resource
+import subprocess
+import sys
+
+import pytest
+
+from groundstation.cli import build_parser, main
+
+
+def run(*arguments, **options):
+    return subprocess.run(
+        [sys.executable, "-m", "groundstation.cli", *arguments],
+        capture_output=True,
+        text=True,
+        stdin=subprocess.DEVNULL,
+        timeout=60,
+        check=False,
+        **options,
+    )
+
+
+def test_help_names_every_way_to_start_and_imports_nothing_heavy():
+    code = (
+        "import sys\n"
+        "from groundstation.cli import build_parser\n"
+        "text = build_parser().format_help()\n"
+        "assert '--sim' in text and '--connect' in text and 'review' in text\n"
+        "heavy = {'numpy', 'textual', 'rerun', 'mavsdk', 'pymavlink', 'iceoryx2', 'msgspec'} & set(sys.modules)\n"
+        "assert not heavy, heavy\n"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+
+
+def test_version_and_help_end_well():
+    assert run("--version").stdout.startswith("groundstation ")
+    done = run("--help")
+    assert done.returncode == 0
+    assert "examples:" in done.stdout
+
+
+def test_nothing_asked_prints_help_and_is_bad_input():
+    done = run()
+    assert done.returncode == 2
+    assert "usage:" in done.stdout
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["--sim", "--headless"], "needs a --mission"),
+        (["--sim", "--headless", "--mission", "nowhere"], "no such mission"),
+        (["--sim", "--headless", "--mission", "/nowhere/m.toml"], "cannot be read"),
+        (["--sim", "--mission", "paper"], "needs a terminal"),
+        (["--connect", "udp://wrong"], "needs a terminal"),
+        (["--connect", "nonsense", "--headless", "--mission", "paper", "--confirm-real"], "not a vehicle's URL"),
+        (["--connect", "udpin://0.0.0.0:14540", "--headless", "--mission", "paper"], "--confirm-real"),
+        (["--sim", "--connect", "udpin://0.0.0.0:14540"], "not allowed with"),
+        (["--sim", "--json"], "add --headless"),
+        (["--sim", "--headless", "--mission", "hover", "--device", "falcon"], "leave --device out"),
+        (["--connect", "udpin://0.0.0.0:1", "--airframe", "x"], "the simulator's"),
+        (["--sim", "--headless", "--mission", "hover", "--config", "/nowhere.toml"], "cannot be read"),
+        (["--sim", "--headless", "--mission", "hover", "--airframe", "zeppelin"], "zeppelin"),
+        (["--sim", "--headless", "--mission", "hover", "--logs", "/proc/nowhere"], "logs"),
+        (["--sim", "--bogus"], "unrecognized"),
+        (["review", "/nowhere.rrd"], "/nowhere.rrd"),
+        (["missions", "check", "/nowhere.toml"], "cannot be read"),
+    ],
+)
+def test_what_is_wrong_gets_one_sentence_and_exit_2(tmp_path, arguments, words):
+    done = run(*arguments, cwd=tmp_path)
+    assert done.returncode == 2, done
+    assert words in done.stderr
+    assert "Traceback" not in done.stderr
+    assert len(done.stderr.strip().splitlines()) == 1
+
+
+def test_missions_list_and_check(capsys):
+    with pytest.raises(SystemExit) as end:
+        main(["missions", "list"])
+    assert end.value.code == 0
+    assert "paper" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("shell", ["bash", "zsh", "tcsh"])
+def test_completion_scripts_know_the_options(shell, capsys):
+    with pytest.raises(SystemExit) as end:
+        main(["completion", shell])
+    assert end.value.code == 0
+    assert "headless" in capsys.readouterr().out
+
+
+def test_a_reader_that_leaves_early_is_no_error():
+    code = f"{sys.executable} -m groundstation.cli completion bash | head -n 1"
+    done = subprocess.run(["/bin/sh", "-c", code], capture_output=True, text=True, check=False)
+    assert "Traceback" not in done.stderr
+
+
+def test_help_takes_little_processor_time():
+    # Not a timed assertion on wall clock: the processor's own account, with a margin of three over the 0.3 s bar.
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    run("--help")
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    assert after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime < 0.9
+
+
+def test_every_option_has_help():
+    for action in build_parser()._actions:
+        assert action.help or action.dest == "command"

@@ -1,4 +1,4 @@
-"""What the benchmarks stand on: the real program in a pseudo-terminal, a vehicle behind a tapped wire, a hand.
+"""What benchmarks and flight tests stand on: the real program in a terminal, a vehicle on a tapped wire, a hand.
 
 Nothing here reaches into the program: the hand is the device's socket, the tap is the vehicle's UDP port, and the
 buttons are the same commands a screen sends.
@@ -26,13 +26,19 @@ from groundstation.processes import free_port
 
 ROOT = Path(__file__).resolve().parents[1]
 SETPOINT_ID = 84
+ROLES = {
+    "groundstation.recording.recorder": "recorder",
+    "groundstation.vehicle.link": "link",
+    "groundstation.pilot.servo": "pilot",
+}
 
 
 class Tap:
     """A UDP relay between program and vehicle that notes when setpoint frames pass and what they carry.
 
     Attributes:
-        setpoints: (time, payload) of every datagram with a setpoint, as it reached the vehicle's side.
+        setpoints: (time, payload) of every datagram with a setpoint, on its way to the vehicle.
+        heard: (time, datagram) of all that the vehicle said.
     """
 
     def __init__(self) -> None:
@@ -41,10 +47,15 @@ class Tap:
         self._peers: dict[socket.socket, object] = {}
         self._running = True
         self.setpoints: list[tuple[float, bytes]] = []
+        self.heard: list[tuple[float, bytes]] = []
         self.program_port = int(self._program.getsockname()[1])
         self.vehicle_port = int(self._vehicle.getsockname()[1])
         self._thread = threading.Thread(target=self._relay, daemon=True)
         self._thread.start()
+
+    def inject(self, data: bytes) -> None:
+        """Say something to the vehicle as if it came from the program's side."""
+        self._vehicle.sendto(data, self._peers[self._vehicle])
 
     def close(self) -> None:
         """End the relay."""
@@ -60,6 +71,8 @@ class Tap:
                 data, peer = ready.recvfrom(65536)
                 now = time.monotonic()
                 self._peers[ready] = peer
+                if ready is self._vehicle:
+                    self.heard.append((now, data))
                 if ready is self._program and data[0] == 0xFD and data[7] == SETPOINT_ID:
                     self.setpoints.append((now, data[14 : 10 + data[1]].ljust(49, b"\0")))
                 if (to := self._peers.get(other[ready])) is not None:
@@ -106,11 +119,11 @@ class Hand:
 
 
 class Program:
-    """The real program in a pseudo-terminal of 200×60, and its bus.
+    """The real program in a pseudo-terminal, and its bus.
 
     Args:
         arguments: Its command line.
-        environment: Additions to the environment.
+        columns, rows: Size of the terminal.
     """
 
     def __init__(self, *arguments: str, columns: int = 200, rows: int = 60) -> None:
@@ -153,7 +166,9 @@ class Program:
 
     def engage(self) -> None:
         """Arm, take off, and couple the hand."""
-        self.until(lambda view: view.status and view.status.connected and view.status.health & 64, 30, "armable")
+        self.until(
+            lambda view: view.status and view.status.connected and view.status.health & 64, 30, "armable"
+        )
         for kind, condition, what in (
             (CommandKind.ARM, lambda view: view.status.armed, "armed"),
             (CommandKind.TAKEOFF, lambda view: view.vehicle and view.vehicle.position[2] > 1.6, "in the air"),
@@ -161,6 +176,17 @@ class Program:
         ):
             self.console.command(kind)
             self.until(condition, 20, what)
+
+    def pids(self) -> dict[str, int]:
+        """Return the processes of the run by the module or role they run."""
+        found: dict[str, int] = {}
+        for folder in Path("/proc").glob("[0-9]*"):
+            with contextlib.suppress(OSError, ValueError):
+                if int((folder / "stat").read_text().rpartition(")")[2].split()[1]) == self.process.pid:
+                    words = (folder / "cmdline").read_bytes().decode().split("\0")
+                    module = words[words.index("-m") + 1]
+                    found[ROLES.get(module, module)] = int(folder.name)
+        return found
 
     def close(self) -> None:
         """End the program and leave its bus."""

@@ -17,7 +17,9 @@ from bench.rig import Hand, Program, Tap, percentile, vehicle
 
 BAR_P50_MS, BAR_P99_MS = 12.0, 25.0
 # Wide limits: the step itself shall reach the wire, not the first thousandth of a jerk-limited ramp.
-SETTINGS = "[limits]\nacceleration = 1000.0\njerk = 1000.0\nyaw_acceleration = 1000.0\n[mapping]\nframe = 'world'\n"
+SETTINGS = (
+    "[limits]\nacceleration = 1000.0\njerk = 1000.0\nyaw_acceleration = 1000.0\n[mapping]\nframe = 'world'\n"
+)
 CALM = 'schema = 1\nname = "calm"\ntitle = "Calm air, ideal vehicle"\n[vehicle]\nmodel = "kinematic"\n'
 PUSH = 0.04
 REST_S, PUSH_S = 0.8, 0.15

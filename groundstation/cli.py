@@ -50,8 +50,14 @@ def build_parser() -> argparse.ArgumentParser:
     parser.add_argument("--version", action="version", version=f"{PROGRAM} {__version__}")
     _add_flight(parser)
     commands = parser.add_subparsers(dest="command", metavar="COMMAND", title="commands besides flying")
-    _add_review(commands)
-    _add_missions(commands)
+    _fill_review(
+        commands.add_parser(
+            "review",
+            help="look at a recorded flight in the Rerun viewer",
+            description="Open a recording in the Rerun viewer; without one, the newest.",
+        )
+    )
+    _fill_missions(commands.add_parser("missions", help="list or check missions"))
     completion = commands.add_parser(
         "completion", help="print a shell's completion script", description=_COMPLETION, formatter_class=_RAW
     )
@@ -74,37 +80,45 @@ def _add_flight(parser: argparse.ArgumentParser) -> None:
         help="fly the vehicle at udpin://HOST:PORT, udpout://HOST:PORT, tcpout://HOST:PORT or serial://PORT:BAUD",
     )
     flight = parser.add_argument_group("flight")
-    flight.add_argument("--mission", metavar="NAME", help="a mission by name or .toml file (default: free flight)")
-    flight.add_argument("--device", metavar="NAME[:ADDRESS]", help="haptic device (default: the on-screen stick)")
-    flight.add_argument("--headless", action="store_true", help="no screen: the scripted hand flies the mission")
+    flight.add_argument(
+        "--mission", metavar="NAME", help="a mission by name or .toml file (default: free flight)"
+    )
+    flight.add_argument(
+        "--device", metavar="NAME[:ADDRESS]", help="haptic device (default: the on-screen stick)"
+    )
+    flight.add_argument(
+        "--headless", action="store_true", help="no screen: the scripted hand flies the mission"
+    )
     flight.add_argument("--json", action="store_true", help="with --headless: the summary as one JSON object")
     flight.add_argument(
-        "--confirm-real", action="store_true", help="with --headless --connect: yes, fly a real vehicle by itself"
+        "--confirm-real",
+        action="store_true",
+        help="with --headless --connect: yes, fly a real vehicle by itself",
     )
     sim = parser.add_argument_group("simulated vehicle (with --sim)")
-    sim.add_argument("--airframe", metavar="NAME", help="a preset's name or a .toml file (default: the mission's)")
-    sim.add_argument("--model", choices=("kinematic", "dynamic"), help="motion model (default: the mission's)")
-    sim.add_argument("--seed", type=int, metavar="N", help="seed of all that is random (default: 0)", default=0)
+    sim.add_argument(
+        "--airframe", metavar="NAME", help="a preset's name or a .toml file (default: the mission's)"
+    )
+    sim.add_argument(
+        "--model", choices=("kinematic", "dynamic"), help="motion model (default: the mission's)"
+    )
+    sim.add_argument(
+        "--seed", type=int, metavar="N", help="seed of all that is random (default: 0)", default=0
+    )
     general = parser.add_argument_group("settings and recording")
     general.add_argument("--config", type=Path, metavar="FILE", help="settings (default: groundstation.toml)")
     general.add_argument("--logs", type=Path, default=Path("logs"), metavar="DIR", help="recordings go here")
     general.add_argument("--rerun", action="store_true", help="show the flight live in the Rerun viewer")
 
 
-def _add_review(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:  # noqa: SLF001
-    review = commands.add_parser(
-        "review",
-        help="look at a recorded flight in the Rerun viewer",
-        description="Open a recording in the Rerun viewer; without one, the newest.",
-    )
+def _fill_review(review: argparse.ArgumentParser) -> None:
     review.add_argument("log", nargs="?", type=Path, metavar="LOG", help="an .rrd file (default: the newest)")
     review.add_argument("--list", action="store_true", help="list the recorded flights, newest first")
     review.add_argument("--web", action="store_true", help="serve the viewer to a browser on this machine")
     review.add_argument("--logs", type=Path, default=Path("logs"), metavar="DIR", help="where recordings are")
 
 
-def _add_missions(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:  # noqa: SLF001
-    missions = commands.add_parser("missions", help="list or check missions")
+def _fill_missions(missions: argparse.ArgumentParser) -> None:
     acts = missions.add_subparsers(dest="act", metavar="ACT", required=True)
     acts.add_parser("list", help="what comes with the program")
     check = acts.add_parser("check", help="say whether mission files are right")

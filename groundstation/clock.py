@@ -1,4 +1,4 @@
-"""Time for loops: a pace of absolute deadlines, and things that are due every so often. Clock and sleep are given."""
+"""Time for loops: a pace of absolute deadlines, and what is due every so often. Clock and sleep are given."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ Clock = Callable[[], float]
 class Pacer:
     """Keeps a loop on a grid of absolute deadlines, so that lateness never adds up.
 
-    A deadline that is more than one period past is given up and counted as missed: a loop that was held up does
-    not hurry through what it missed.
+    A deadline that is more than one period past is given up and counted as missed: a loop that was held up
+    does not hurry through what it missed.
 
     Args:
         period: From one deadline to the next, s.

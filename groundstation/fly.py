@@ -5,8 +5,10 @@ from __future__ import annotations
 import argparse
 import datetime
 import os
+import signal
 import sys
 from pathlib import Path
+from typing import NoReturn
 
 import msgspec
 
@@ -30,6 +32,9 @@ def fly(asked: argparse.Namespace) -> int:
     _check(asked)
     sweep_dead_runs()
     run = plan(asked)
+    # Ended from outside, or the terminal closed: leave by the same way as always, children first.
+    for number in (signal.SIGTERM, signal.SIGHUP):
+        signal.signal(number, _leave)
     options = _sim_options(asked)
     with running(run, "headless" if asked.headless else "screen", options) as (bus, supervisor):
         if asked.headless:
@@ -39,6 +44,10 @@ def fly(asked: argparse.Namespace) -> int:
         from groundstation.tui.app import fly_on_screen
 
         return fly_on_screen(run, bus, supervisor)
+
+
+def _leave(number: int, _frame: object) -> NoReturn:
+    raise SystemExit(128 + number)
 
 
 def plan(asked: argparse.Namespace) -> Run:
@@ -79,7 +88,9 @@ def _check(asked: argparse.Namespace) -> None:
     if asked.json and not asked.headless:
         raise InputError("--json is the summary of a --headless flight; add --headless.")
     if asked.headless and asked.connect and not asked.confirm_real:
-        raise InputError("--headless --connect flies a real vehicle by itself; add --confirm-real if you mean it.")
+        raise InputError(
+            "--headless --connect flies a real vehicle by itself; add --confirm-real if you mean it."
+        )
     if asked.connect and (asked.airframe or asked.model):
         raise InputError("--airframe and --model are the simulator's; a real vehicle brings its own.")
     if not asked.headless and not (sys.stdin.isatty() and sys.stdout.isatty()):

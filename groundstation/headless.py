@@ -170,7 +170,12 @@ class Hand:
     """
 
     def __init__(
-        self, mission: Mission, mapping: RateMapping, sender: StickSender, seed: int, clock: Callable[[], float]
+        self,
+        mission: Mission,
+        mapping: RateMapping,
+        sender: StickSender,
+        seed: int,
+        clock: Callable[[], float],
     ) -> None:
         route, target = mission.route, mission.target
         self._operator = Operator(route, target.position, seed=seed) if target else None

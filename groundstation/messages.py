@@ -146,7 +146,15 @@ class Setpoint(Record):
 
 
 class PilotState(Record):
-    """The inside of the controller, 50 Hz: equations (4) and (5) term by term."""
+    """The inside of the controller, 50 Hz: equations (4) and (5) term by term.
+
+    Attributes:
+        v_ref: As equation (4) gives it, vehicle's axes; `Setpoint` has it within limits.
+        force: As equation (5) gives it, world, N; `Handle` has what is rendered, damped, ramped and limited.
+        state_age: Age of the vehicle's state, s; infinite before the first.
+        centred: The handle is where engaging is possible.
+        reason: Why the hand was last uncoupled, or could not be coupled; empty while it is.
+    """
 
     p_h: ctypes.Array[_F64]
     p_h_rate: ctypes.Array[_F64]
@@ -174,7 +182,7 @@ class PilotState(Record):
 
 
 class VehicleState(Record):
-    """Where the vehicle says it is, each time it says so (`t` is the arrival)."""
+    """Where the vehicle says it is, each time it says so (`t` is the arrival); all of it in the world."""
 
     position: ctypes.Array[_F64]
     velocity: ctypes.Array[_F64]

@@ -1,8 +1,8 @@
 """The processes of a run, in one table: started together, watched, and ended in order.
 
 The screen (or the headless flight) is the fifth process and holds the `Supervisor`. A process that dies or falls
-silent is told once, in words; what happens to the vehicle then is the business of the pilot and the link, which
-notice by themselves.
+silent is told once, in words. Pilot and link notice each other's death by themselves; whichever other process dies,
+the supervisor has the pilot let go, so that the vehicle holds.
 """
 
 from __future__ import annotations
@@ -13,13 +13,13 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Generator, Mapping
 from dataclasses import dataclass
 from enum import StrEnum
 from pathlib import Path
 
 from groundstation.bus import Bus, run_folder, sweep
-from groundstation.messages import HEARTBEAT, Severity
+from groundstation.messages import COMMAND, HEARTBEAT, Command, CommandKind, Severity
 from groundstation.run import Run, write_run
 
 SILENT_S = 1.0
@@ -74,7 +74,10 @@ def table(run: Run, run_file: Path, sim_options: tuple[str, ...] = ()) -> tuple[
     mission = ("--mission", run.mission_path) if run.mission_path else ()
     port = run.url.rpartition(":")[2]
     simulator = (sys.executable, "-m", "sim", "--connect", f"udpout://127.0.0.1:{port}")
-    return (Process("sim", (*simulator, "--quiet", "--with-parent", *mission, *sim_options), beats=False), *ours)
+    return (
+        Process("sim", (*simulator, "--quiet", "--with-parent", *mission, *sim_options), beats=False),
+        *ours,
+    )
 
 
 @dataclass(slots=True)
@@ -104,6 +107,7 @@ class Supervisor:
         self._bus = bus
         self._clock = clock
         self._heartbeats = bus.subscriber(HEARTBEAT)
+        self._commands = bus.publisher(COMMAND)
         self._watched = [self._start(process) for process in processes]
 
     def poll(self) -> list[str]:
@@ -113,6 +117,8 @@ class Supervisor:
         news = [sentence for watched in self._watched if (sentence := self._look(watched, beats, now))]
         for sentence in news:
             self._bus.event(Severity.ALARM, sentence)
+        if news and State.ENDED in self.states().values():
+            self._commands.send(Command(t=now, kind=int(CommandKind.DISENGAGE), source=b"supervisor"))
         return news
 
     def states(self) -> Mapping[str, State]:
@@ -139,7 +145,11 @@ class Supervisor:
         with log.open("wb") as output:
             # A session of its own: Ctrl-C in the terminal is the supervisor's to answer, in order.
             popen = subprocess.Popen(
-                process.command, stdin=subprocess.DEVNULL, stdout=output, stderr=output, start_new_session=True
+                process.command,
+                stdin=subprocess.DEVNULL,
+                stdout=output,
+                stderr=output,
+                start_new_session=True,
             )
         return _Watched(process, popen, log, self._clock())
 
@@ -155,7 +165,9 @@ class Supervisor:
         if not watched.process.beats or now - watched.beat_t <= SILENT_S:
             watched.state = State.RUNNING
             return ""
-        if watched.state is State.RUNNING or (watched.state is State.STARTING and now - watched.started > _STARTING_S):
+        if watched.state is State.RUNNING or (
+            watched.state is State.STARTING and now - watched.started > _STARTING_S
+        ):
             watched.state = State.SILENT
             return f"The {role} process does not answer."
         return ""
@@ -171,7 +183,7 @@ def free_port() -> int:
 
 
 @contextlib.contextmanager
-def running(run: Run, role: str, sim_options: tuple[str, ...] = ()):
+def running(run: Run, role: str, sim_options: tuple[str, ...] = ()) -> Generator[tuple[Bus, Supervisor]]:
     """Run a run: yield the bus and the supervisor, and leave nothing behind however the block ends."""
     run_file = write_run(run)
     bus = Bus(run.run_id, role)

@@ -27,5 +27,7 @@ def check(files: Sequence[Path]) -> int:
             print(f"groundstation: {error}", file=sys.stderr)
             code = 2
         else:
-            print(f"{path}: right ({mission.name}: {len(mission.obstacle)} obstacles, {len(mission.route)} legs).")
+            print(
+                f"{path}: right ({mission.name}: {len(mission.obstacle)} obstacles, {len(mission.route)} legs)."
+            )
     return code

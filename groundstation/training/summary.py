@@ -95,7 +95,9 @@ def summarise(run: Run, director: Director, servo: ServoReport | None, failure: 
 
 def _table(figures: dict[str, object]) -> str:
     servo, logs, missing = figures["servo"], figures["logs"], figures["shortcomings"]
-    assert isinstance(servo, dict) and isinstance(logs, dict) and isinstance(missing, list)
+    assert isinstance(servo, dict)
+    assert isinstance(logs, dict)
+    assert isinstance(missing, list)
     verdict = "completed" if figures["completed"] else "NOT completed: " + "; ".join(map(str, missing))
     total = servo["ticks"] + servo["missed"]
     share = 100.0 * servo["ticks"] / total if total else math.nan
@@ -106,8 +108,11 @@ def _table(figures: dict[str, object]) -> str:
         ("position error", f"{figures['rms_error_m']} m RMS, {figures['final_error_m']} m at the target"),
         ("largest force", f"{figures['max_force_n']} N"),
         ("collisions", f"{figures['collisions']}"),
-        ("servo", f"{share:.2f} % of ticks at {servo['rate_hz']} Hz, late {servo['late_p50_us']} µs p50, "
-                  f"{servo['late_p99_us']} µs p99"),
+        (
+            "servo",
+            f"{share:.2f} % of ticks at {servo['rate_hz']} Hz, late {servo['late_p50_us']} µs p50, "
+            f"{servo['late_p99_us']} µs p99",
+        ),
         ("recording", f"{logs['rrd']}"),
         ("MAVLink log", f"{logs['tlog']}"),
     )

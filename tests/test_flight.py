@@ -1,0 +1,249 @@
+"""Whole flights with all processes over real UDP: a mission flown, processes killed and frozen, nothing left over.
+
+The vehicle's side is looked at where it counts: at its socket, through a relay.
+"""
+
+import json
+import math
+import os
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+import pytest
+from pymavlink import mavutil
+from pymavlink.dialects.v20 import common as mavlink
+
+from bench.rig import ROOT, Hand, Program, Tap, vehicle
+from groundstation.messages import Phase
+
+pytestmark = [pytest.mark.flight, pytest.mark.timeout(180)]
+
+PX4_AUTO, PX4_LOITER, PX4_OFFBOARD = 4, 3, 6
+LONG = """
+schema = 1
+name = "long"
+title = "A long stay in the air"
+[target]
+position = [0.0, 0.0, 2.0]
+hold_s = 500.0
+[criteria]
+time_limit_s = 600.0
+"""
+
+
+def left_behind(pid: int) -> list[Path]:
+    return [
+        *Path("/dev/shm").glob(f"groundstation-{pid}-*"),
+        *Path(tempfile.gettempdir()).glob(f"groundstation-{pid}-*"),
+    ]
+
+
+def descendants(pid: int) -> list[int]:
+    found = []
+    for folder in Path("/proc").glob("[0-9]*"):
+        try:
+            if int((folder / "stat").read_text().rpartition(")")[2].split()[1]) == pid:
+                found.append(int(folder.name))
+        except (OSError, ValueError):
+            continue
+    return found
+
+
+def until(condition, within_s, what):
+    deadline = time.monotonic() + within_s
+    while time.monotonic() < deadline:
+        if result := condition():
+            return result
+        time.sleep(0.02)
+    pytest.fail(f"within {within_s} s it did not happen: {what}")
+
+
+def headless(*arguments):
+    return subprocess.run(
+        [sys.executable, "-m", "groundstation.cli", *arguments],
+        capture_output=True,
+        text=True,
+        stdin=subprocess.DEVNULL,
+        cwd=ROOT,
+        timeout=170,
+        check=False,
+    )
+
+
+def messages(datagrams, kind):
+    parser = mavlink.MAVLink(None)
+    parser.robust_parsing = True
+    for t, data in datagrams:
+        for message in parser.parse_buffer(data) or ():
+            if message.get_type() == kind:
+                yield t, message
+
+
+def px4_mode(heartbeat) -> tuple[int, int]:
+    return heartbeat.custom_mode >> 16 & 0xFF, heartbeat.custom_mode >> 24 & 0xFF
+
+
+@pytest.fixture
+def flight(tmp_path):
+    """A flight by hand on the screen, engaged and pushed forward, with the vehicle behind a tap."""
+    mission = tmp_path / "long.toml"
+    mission.write_text(LONG)
+    hand, tap = Hand(str(tmp_path / "hand.sock")), Tap()
+    with vehicle(tap.vehicle_port, "--mission", str(mission)) as simulated:
+        program = Program(
+            "--connect", f"udpout://127.0.0.1:{tap.program_port}", "--device", f"virtual:{tmp_path / 'hand.sock'}",
+            "--mission", str(mission), "--logs", str(tmp_path / "logs"),
+        )  # fmt: skip
+        program.tap, program.hand, program.simulated, program.logs = tap, hand, simulated, tmp_path / "logs"
+        try:
+            program.engage()
+            hand.put((0.06, 0.0, 0.0))
+            until(lambda: speed(tap) > 0.5, 10, "the vehicle follows the hand")
+            yield program
+        finally:
+            program.close()
+            hand.close()
+            tap.close()
+
+
+def speed(tap) -> float:
+    found = [message for _, message in messages(tap.heard[-60:], "LOCAL_POSITION_NED")]
+    return math.hypot(found[-1].vx, found[-1].vy, found[-1].vz) if found else 0.0
+
+
+def holds(tap) -> bool:
+    modes = [px4_mode(message) for _, message in messages(tap.heard[-400:], "HEARTBEAT")]
+    return bool(modes) and modes[-1] == (PX4_AUTO, PX4_LOITER) and speed(tap) < 0.2
+
+
+def test_a_mission_is_flown_summed_up_and_recorded(tmp_path):
+    done = headless("--sim", "--headless", "--mission", "hover", "--json", "--logs", str(tmp_path))
+    assert done.returncode == 0, done.stderr
+    summary = json.loads(done.stdout)
+    assert summary["completed"] is True
+    assert summary["collisions"] == 0
+    assert summary["final_error_m"] <= 0.2
+    assert 5 < summary["duration_s"] < 60
+    assert summary["path_m"] > 2
+    servo = summary["servo"]
+    assert servo["rate_hz"] == pytest.approx(1000)
+    assert servo["ticks"] > 5000
+    assert "taking off" in done.stderr
+    log = mavutil.mavlink_connection(summary["logs"]["tlog"])
+    kinds = set()
+    while (message := log.recv_match()) is not None:
+        kinds.add(message.get_type())
+    log.close()
+    assert {"HEARTBEAT", "SET_POSITION_TARGET_LOCAL_NED", "LOCAL_POSITION_NED", "COMMAND_LONG"} <= kinds
+    assert Path(summary["logs"]["rrd"]).stat().st_size > 10_000
+
+
+def test_a_mission_that_fails_its_criteria_exits_1_and_says_why(tmp_path):
+    mission = tmp_path / "hasty.toml"
+    mission.write_text(
+        'schema = 1\nname = "hasty"\ntitle = "No time"\n[target]\nposition = [0.0, 0.0, 2.0]\nhold_s = 1.0\n'
+        "[criteria]\ntime_limit_s = 2.0\n"
+    )
+    done = headless("--sim", "--headless", "--mission", str(mission), "--logs", str(tmp_path))
+    assert done.returncode == 1, done.stderr
+    assert "is over 2 s" in done.stdout
+
+
+@pytest.mark.parametrize("role", ["pilot", "link", "recorder"])
+def test_a_killed_process_ends_in_a_vehicle_that_holds_and_is_told(flight, role):
+    os.kill(flight.pids()[role], signal.SIGKILL)
+    until(lambda: holds(flight.tap), 6, "the vehicle holds")
+    told = f"The {role} process has died".encode()
+    until(
+        lambda: any(told in event.text for event in flight.console.snapshot().events), 5, "the death is told"
+    )
+    if role != "pilot":
+        view = flight.until(lambda view: view.pilot.phase == Phase.DISENGAGED, 5, "uncoupled")
+        assert math.hypot(*view.handle.force) == 0.0
+    flight.process.send_signal(signal.SIGTERM)
+    flight.process.wait(30)
+    assert not descendants(flight.process.pid)
+    assert not left_behind(flight.process.pid)
+
+
+def test_a_killed_screen_takes_all_with_it_and_the_vehicle_holds(flight):
+    pids = flight.pids()
+    os.kill(flight.process.pid, signal.SIGKILL)
+    flight.process.wait(10)
+    until(lambda: holds(flight.tap), 6, "the vehicle holds")
+    until(lambda: not any(Path(f"/proc/{pid}").exists() for pid in pids.values()), 20, "the others end")
+
+
+def test_a_frozen_pilot_lets_no_old_setpoint_out(flight):
+    pid = flight.pids()["pilot"]
+    os.kill(pid, signal.SIGSTOP)
+    stopped = time.monotonic()
+    until(lambda: holds(flight.tap), 6, "the vehicle holds")
+    assert max(t for t, _ in flight.tap.setpoints) - stopped < 0.15 + 0.05
+    flight.tap.setpoints.clear()
+    os.kill(pid, signal.SIGCONT)
+    time.sleep(1.5)
+    assert flight.tap.setpoints == []
+    assert flight.console.snapshot().pilot.phase == Phase.DISENGAGED
+
+
+def test_a_frozen_link_lets_nothing_out_and_nothing_old_when_it_wakes(flight):
+    pid = flight.pids()["link"]
+    os.kill(pid, signal.SIGSTOP)
+    stopped = time.monotonic()
+    until(lambda: holds(flight.tap), 6, "the vehicle holds by its own failsafe")
+    assert max(t for t, _ in flight.tap.setpoints) - stopped < 0.05
+    flight.tap.setpoints.clear()
+    os.kill(pid, signal.SIGCONT)
+    time.sleep(2.0)
+    assert flight.tap.setpoints == []
+
+
+def test_a_frozen_link_is_noticed_by_the_vehicle_within_its_time(flight):
+    """Offboard loss is 1.0 s; with the stop in the middle of a 20 ms period, 1.2 s is the bar."""
+    os.kill(flight.pids()["link"], signal.SIGSTOP)
+    stopped = time.monotonic()
+    texts = until(
+        lambda: [
+            t
+            for t, message in messages(flight.tap.heard, "STATUSTEXT")
+            if "ffboard" in message.text and t > stopped
+        ],
+        5,
+        "the vehicle says that it lost offboard",
+    )
+    os.kill(flight.pids()["link"], signal.SIGCONT)
+    assert texts[0] - stopped < 1.2 + 0.1
+
+
+def test_a_silent_hand_ends_in_hold(flight):
+    flight.hand.close()
+    flight.until(lambda view: view.pilot.phase == Phase.DISENGAGED, 5, "uncoupled")
+    until(lambda: holds(flight.tap), 6, "the vehicle holds")
+
+
+def test_another_that_takes_over_is_not_fought(flight):
+    # A second ground station asks the vehicle to hold, straight at its socket.
+    other = mavlink.MAVLink(None, srcSystem=254, srcComponent=190)
+    hold = other.command_long_encode(1, 1, 176, 0, 1 | 128, PX4_AUTO, PX4_LOITER, 0, 0, 0, 0)
+    flight.tap.inject(bytes(hold.pack(other)))
+    flight.until(lambda view: view.pilot.phase == Phase.DISENGAGED, 5, "uncoupled")
+    time.sleep(0.3)
+    flight.tap.setpoints.clear()
+    time.sleep(1.5)
+    assert flight.tap.setpoints == []
+    assert holds(flight.tap)
+
+
+def test_nothing_is_left_behind_after_a_good_end(tmp_path):
+    program = Program("--sim", "--mission", "hover", "--logs", str(tmp_path))
+    program.until(lambda view: view.status and view.status.connected, 20, "connected")
+    children = program.pids()
+    assert {"pilot", "link", "recorder", "sim"} <= set(children)
+    program.close()
+    assert not any(Path(f"/proc/{pid}").exists() for pid in children.values())
+    assert not left_behind(program.process.pid)

@@ -113,7 +113,8 @@ class HeadlessFlight:
             self._director.vehicle(state.t, (x, y, z), in_air=bool(status.in_air), armed=bool(status.armed))
         if pilot and pilot.phase == Phase.ENGAGED and pilot.t > self._controlled_t:
             self._controlled_t = pilot.t
-            self._director.controller((pilot.error[0], pilot.error[1], pilot.error[2]), tuple(pilot.force))
+            force = tuple(view.handle.force) if view.handle else (0.0, 0.0, 0.0)
+            self._director.controller((pilot.error[0], pilot.error[1], pilot.error[2]), force)
 
     def _note_refusals(self, answers: tuple[CommandAnswer, ...]) -> None:
         for answer in answers:

@@ -287,12 +287,13 @@ class Event(Record):
 
 
 class ServoReport(Record):
-    """How well the servo keeps its time, 2 Hz. Counts are since its start, figures of the last window.
+    """How well the servo keeps its time, 2 Hz. Counts are since its start, figures of the last half second.
 
     Attributes:
         ticks: Ticks run since start.
         missed: Ticks that did not run because an earlier one was too late.
         late_p50: Lateness of a tick's start, s; also p99 and largest.
+        run_p50: The same since the start; also p99.
         read: Longest time to read the device, s; likewise to write the force.
         realtime: The system granted real-time priority.
     """
@@ -301,6 +302,8 @@ class ServoReport(Record):
     late_p50: float
     late_p99: float
     late_max: float
+    run_p50: float
+    run_p99: float
     read: float
     write: float
     step: float
@@ -313,6 +316,8 @@ class ServoReport(Record):
         ("late_p50", _F64),
         ("late_p99", _F64),
         ("late_max", _F64),
+        ("run_p50", _F64),
+        ("run_p99", _F64),
         ("read", _F64),
         ("write", _F64),
         ("step", _F64),

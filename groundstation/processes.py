@@ -111,15 +111,18 @@ class Supervisor:
         self._watched = [self._start(process) for process in processes]
 
     def poll(self) -> list[str]:
-        """Look at every process; return a sentence for each that has newly died or fallen silent."""
+        """Look at every process; tell of each that has newly died or fallen silent, and return the deaths."""
         now = self._clock()
         beats = {beat.role.decode(): beat.t for beat in self._heartbeats.drain()}
-        news = [sentence for watched in self._watched if (sentence := self._look(watched, beats, now))]
-        for sentence in news:
-            self._bus.event(Severity.ALARM, sentence)
-        if news and State.ENDED in self.states().values():
+        deaths: list[str] = []
+        for watched in self._watched:
+            if sentence := self._look(watched, beats, now):
+                self._bus.event(Severity.ALARM, sentence)
+                if watched.state is State.ENDED:
+                    deaths.append(sentence)
+        if deaths:
             self._commands.send(Command(t=now, kind=int(CommandKind.DISENGAGE), source=b"supervisor"))
-        return news
+        return deaths
 
     def states(self) -> Mapping[str, State]:
         """Return how each process was when last looked at."""

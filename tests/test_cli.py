@@ -55,7 +55,10 @@ def test_nothing_asked_prints_help_and_is_bad_input():
         (["--sim", "--headless", "--mission", "/nowhere/m.toml"], "cannot be read"),
         (["--sim", "--mission", "paper"], "needs a terminal"),
         (["--connect", "udp://wrong"], "needs a terminal"),
-        (["--connect", "nonsense", "--headless", "--mission", "paper", "--confirm-real"], "not a vehicle's URL"),
+        (
+            ["--connect", "nonsense", "--headless", "--mission", "paper", "--confirm-real"],
+            "not a vehicle's URL",
+        ),
         (["--connect", "udpin://0.0.0.0:14540", "--headless", "--mission", "paper"], "--confirm-real"),
         (["--sim", "--connect", "udpin://0.0.0.0:14540"], "not allowed with"),
         (["--sim", "--json"], "add --headless"),

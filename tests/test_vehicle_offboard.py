@@ -4,8 +4,8 @@ import math
 
 import pytest
 
-from groundstation.messages import FlightMode
-from groundstation.vehicle.offboard import Act, OffboardStream, Seen, Stream
+from groundstation.messages import FlightMode, Stream
+from groundstation.vehicle.offboard import Act, OffboardStream, Seen
 
 
 def seen(now=10.0, active=True, age=0.01, mode=FlightMode.HOLD, mode_t=0.0):

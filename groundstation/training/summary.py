@@ -59,7 +59,7 @@ class Narrator:
 def summary(run: Run, director: Director, servo: ServoReport | None, failure: str) -> dict[str, object]:
     """Return a flight's summary as it is printed with `--json`. Numbers that do not exist are null."""
     figures = director.figures
-    report = servo or ServoReport(late_p50=math.nan, late_p99=math.nan, rate=math.nan)
+    report = servo or ServoReport(run_p50=math.nan, run_p99=math.nan, rate=math.nan)
     return {
         "completed": not failure and not director.shortcomings(),
         "mission": director.mission.name,
@@ -74,8 +74,8 @@ def summary(run: Run, director: Director, servo: ServoReport | None, failure: st
             "rate_hz": _rounded(report.rate, 1),
             "ticks": int(report.ticks),
             "missed": int(report.missed),
-            "late_p50_us": _rounded(report.late_p50 * 1e6, 1),
-            "late_p99_us": _rounded(report.late_p99 * 1e6, 1),
+            "late_p50_us": _rounded(report.run_p50 * 1e6, 1),
+            "late_p99_us": _rounded(report.run_p99 * 1e6, 1),
         },
         "logs": {"rrd": _existing(run, "rrd"), "tlog": _existing(run, "tlog")},
         "shortcomings": [failure] if failure else director.shortcomings(),

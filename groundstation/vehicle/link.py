@@ -27,13 +27,14 @@ from groundstation.messages import (
     CommandAnswer,
     CommandKind,
     Severity,
+    Stream,
     VehicleStatus,
     fit,
 )
 from groundstation.run import Run
 from groundstation.vehicle.commander import STEERING, Commander
 from groundstation.vehicle.gate import Gate
-from groundstation.vehicle.offboard import Act, OffboardStream, Seen, Stream
+from groundstation.vehicle.offboard import Act, OffboardStream, Seen
 from groundstation.vehicle.pump import Pump
 from groundstation.vehicle.round_trip import RoundTrip
 from groundstation.vehicle.telemetry import Notes, VehicleView

@@ -12,18 +12,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import IntEnum
 
-from groundstation.messages import FlightMode
+from groundstation.messages import FlightMode, Stream
 
 START_TIMEOUT_S = 3.0
-
-
-class Stream(IntEnum):
-    """State of the stream; `VehicleStatus.streaming` carries it."""
-
-    IDLE = 0
-    STARTING = 1
-    FLYING = 2
-    ENDED = 3
 
 
 class Act(IntEnum):

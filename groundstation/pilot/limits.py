@@ -1,0 +1,163 @@
+"""What no setpoint and no force exceeds: speed, acceleration and jerk of the setpoint; slew of the force.
+
+The horizontal plane is limited as a whole, by length: forward + i·left is one complex number, so that a limit
+shortens a vector and keeps its direction, and the same lines serve the single axes, whose numbers have no
+imaginary part.
+"""
+
+from __future__ import annotations
+
+from math import hypot, isfinite
+from typing import NamedTuple
+
+from drivers.device import Vector3
+from groundstation import config
+from groundstation.frames import Vector4
+from groundstation.pilot.feedback import scaled
+
+# Closer than this to the target nothing is worth a push, m/s or rad/s.
+_THERE = 1e-12
+
+
+class Bounds(NamedTuple):
+    """Largest speed, acceleration and jerk, in m or rad and s."""
+
+    speed: float
+    acceleration: float
+    jerk: float
+
+
+class Motion(NamedTuple):
+    """A velocity and its rate, along one axis (real) or in the plane (complex)."""
+
+    velocity: complex = 0.0
+    acceleration: complex = 0.0
+
+
+class SetpointMotion(NamedTuple):
+    """How the setpoint moves: forward + i·left, up, and yaw; m/s, rad/s and their rates."""
+
+    plane: Motion = Motion()
+    up: Motion = Motion()
+    yaw: Motion = Motion()
+
+
+class SetpointLimiter:
+    """Brings the setpoint to the commanded velocity as fast as the limits allow, and never past it.
+
+    Args:
+        limits: Speeds, accelerations, jerks.
+    """
+
+    def __init__(self, limits: config.Limits) -> None:
+        self._plane = Bounds(limits.horizontal_speed, limits.acceleration, limits.jerk)
+        self._up = Bounds(limits.vertical_speed, limits.acceleration, limits.jerk)
+        self._yaw = Bounds(limits.yaw_rate, limits.yaw_acceleration, limits.yaw_jerk)
+
+    def step(self, motion: SetpointMotion, v_ref: Vector4, dt: float) -> tuple[SetpointMotion, Vector4]:
+        """Move the setpoint towards `v_ref` for `dt` s.
+
+        Args:
+            motion: Of the setpoint so far.
+            v_ref: Commanded velocity on the vehicle's axes, m/s and rad/s.
+            dt: s.
+
+        Returns:
+            The setpoint's motion, and its velocity on the vehicle's axes.
+
+        Raises:
+            ValueError: `v_ref` is not finite.
+        """
+        forward, left, up, yaw = v_ref
+        if not isfinite(forward + left + up + yaw):
+            raise ValueError(f"The velocity reference {v_ref} is not finite; nothing may follow it.")
+        motion = SetpointMotion(
+            approach(motion.plane, complex(forward, left), self._plane, dt),
+            approach(motion.up, up, self._up, dt),
+            approach(motion.yaw, yaw, self._yaw, dt),
+        )
+        plane = motion.plane.velocity
+        return motion, (plane.real, plane.imag, motion.up.velocity.real, motion.yaw.velocity.real)
+
+
+def approach(motion: Motion, target: complex, bounds: Bounds, dt: float) -> Motion:
+    """Move a velocity towards a target within bounds, for `dt` s.
+
+    Braking now, at full jerk, would take the velocity v with its acceleration a to `reach` = v + a|a|/2j. The
+    rule: push from there towards the target, but only as far as `reach` neither passes it, nor moves away
+    from it, nor leaves the allowed speeds; else brake. Braking leaves `reach` where it is, so it is always
+    open, and what was within bounds stays so. The last push is weighed: it meets the target, never passes.
+
+    Args:
+        motion: Velocity and acceleration now, within bounds.
+        target: Commanded velocity; shortened to the largest speed.
+        bounds: Largest speed, acceleration, jerk.
+        dt: s.
+    """
+    target = _shortened(target, bounds.speed)
+    reach = _reach(motion, bounds.jerk)
+    gap = target - reach
+    distance = abs(gap)
+    rest = _braked(motion, bounds.jerk, dt)
+    if distance < _THERE:
+        return rest
+    push = _pushed(motion, gap * (bounds.jerk * dt / distance), bounds.acceleration, dt)
+    beyond = _along(_reach(push, bounds.jerk) - target, gap) / distance
+    if beyond > 0.0:
+        # `reach` grows faster than in proportion to the push, so this share of it never passes.
+        share = distance / (distance + beyond)
+        push = Motion(
+            rest.velocity + share * (push.velocity - rest.velocity),
+            rest.acceleration + share * (push.acceleration - rest.acceleration),
+        )
+    reach = _reach(push, bounds.jerk)
+    safe = abs(push.velocity) <= bounds.speed and abs(reach) <= bounds.speed
+    return push if safe and abs(target - reach) <= distance else rest
+
+
+def _reach(motion: Motion, jerk: float) -> complex:
+    """Return the velocity that braking at full jerk ends at."""
+    return motion.velocity + motion.acceleration * (abs(motion.acceleration) / (2.0 * jerk))
+
+
+def _braked(motion: Motion, jerk: float, dt: float) -> Motion:
+    """Take the acceleration towards zero at full jerk; where it gets there within the tick, it stays."""
+    v, a = motion
+    size = abs(a)
+    if size <= jerk * dt:
+        return Motion(_reach(motion, jerk), 0.0)
+    slower = a * (1.0 - jerk * dt / size)
+    return Motion(v + (a + slower) * (0.5 * dt), slower)
+
+
+def _pushed(motion: Motion, change: complex, acceleration: float, dt: float) -> Motion:
+    """Change the acceleration, up to its bound, steadily over the tick."""
+    v, a = motion
+    faster = _shortened(a + change, acceleration)
+    return Motion(v + (a + faster) * (0.5 * dt), faster)
+
+
+def _shortened(value: complex, length: float) -> complex:
+    size = abs(value)
+    return value if size <= length else value * (length / size)
+
+
+def _along(value: complex, direction: complex) -> float:
+    """Return the scalar product."""
+    return value.real * direction.real + value.imag * direction.imag
+
+
+def slewed(force: Vector3, target: Vector3, step: float) -> Vector3:
+    """Move a force straight towards a target by at most `step`, N.
+
+    Raises:
+        ValueError: The target is not finite.
+    """
+    x, y, z = target[0] - force[0], target[1] - force[1], target[2] - force[2]
+    distance = hypot(x, y, z)
+    if not isfinite(distance):
+        raise ValueError(f"The force {target} is not finite; no hand may feel it.")
+    if distance <= step:
+        return target
+    x, y, z = scaled((x, y, z), step / distance)
+    return force[0] + x, force[1] + y, force[2] + z

@@ -1,0 +1,125 @@
+"""What the pilot puts on the bus. Records are made once and filled anew, so that a tick allocates little."""
+
+from __future__ import annotations
+
+from drivers.device import ZERO3, DeviceInfo, HandleState, Vector3
+from groundstation.bus import Bus
+from groundstation.frames import Vector4
+from groundstation.messages import (
+    ANSWER_TEXT,
+    COMMAND_ANSWER,
+    DEVICE_REPORT,
+    HANDLE,
+    PILOT_STATE,
+    REASON_TEXT,
+    SERVO_REPORT,
+    SETPOINT,
+    Command,
+    CommandAnswer,
+    DeviceReport,
+    Handle,
+    Phase,
+    PilotState,
+    ServoReport,
+    Setpoint,
+    fit,
+)
+from groundstation.pilot.lateness import Figures
+from groundstation.pilot.pilot import Outputs
+
+_NAME, _RENDERS = 64, 16
+
+
+class Outbox:
+    """The pilot's records and their senders.
+
+    Args:
+        bus: Where they go.
+    """
+
+    def __init__(self, bus: Bus) -> None:
+        self._handles = bus.publisher(HANDLE)
+        self._setpoints = bus.publisher(SETPOINT)
+        self._states = bus.publisher(PILOT_STATE)
+        self._answers = bus.publisher(COMMAND_ANSWER)
+        self._servo_reports = bus.publisher(SERVO_REPORT)
+        self._device_reports = bus.publisher(DEVICE_REPORT)
+        self._handle = Handle()
+        self._setpoint = Setpoint()
+        self._state = PilotState()
+        self._servo_report = ServoReport()
+        self._device_report = DeviceReport()
+        # Views into the records: looking an array up in a structure makes a new object every time.
+        handle = self._handle
+        self._position, self._velocity, self._force = handle.position, handle.velocity, handle.force
+
+    def handle(self, t: float, hand: HandleState, force: Vector3, *, present: bool) -> None:
+        """Send the hand and the force on it."""
+        record = self._handle
+        record.t = t
+        self._position[:] = hand.position
+        self._velocity[:] = hand.velocity
+        self._force[:] = force if present else ZERO3
+        record.yaw = hand.yaw
+        record.device_t = hand.device_time
+        record.buttons = hand.buttons
+        record.homed = hand.homed
+        record.present = present
+        record.tick += 1
+        self._handles.send(record)
+
+    def setpoint(self, t: float, velocity: Vector4, handle_t: float, *, active: bool) -> None:
+        """Send what the vehicle shall do."""
+        record = self._setpoint
+        record.t = t
+        record.velocity[:] = velocity
+        record.handle_t = handle_t
+        record.number += 1
+        record.active = active
+        self._setpoints.send(record)
+
+    def pilot_state(
+        self, t: float, outputs: Outputs, state_age: float, phase: Phase, reason: str, *, centred: bool
+    ) -> None:
+        """Send the inside of the controller."""
+        record = self._state
+        record.t = t
+        record.p_h[:] = outputs.p_h
+        record.p_h_rate[:] = outputs.p_h_rate
+        record.error[:] = outputs.error
+        record.v_ref[:] = outputs.v_ref
+        record.force[:] = outputs.position_force
+        record.state_age = state_age
+        record.phase = phase
+        record.on_leash = outputs.on_leash
+        record.centred = centred
+        record.reason = fit(reason, REASON_TEXT)
+        self._states.send(record)
+
+    def answer(self, t: float, command: Command, refusal: str) -> None:
+        """Answer a command: done, or refused with the reason."""
+        record = CommandAnswer(t=t, number=command.number, kind=command.kind, ok=not refusal)
+        record.text = fit(refusal, ANSWER_TEXT)
+        self._answers.send(record)
+
+    def device_report(self, t: float, info: DeviceInfo, *, present: bool, homed: bool) -> None:
+        """Send which device there is."""
+        record = self._device_report
+        record.t = t
+        record.name, record.serial = fit(info.name, _NAME), fit(info.serial, _NAME)
+        record.renders = fit(info.renders, _RENDERS)
+        record.workspace, record.force_limit = info.workspace, info.force_limit
+        record.present, record.homed = present, homed
+        self._device_reports.send(record)
+
+    def servo_report(
+        self, t: float, rate: float, late: Figures, longest: Vector3, missed: int, *, realtime: bool
+    ) -> None:
+        """Send how well the servo keeps its time; `longest` read, write and step, s."""
+        record = self._servo_report
+        record.t, record.rate = t, rate
+        record.late_p50, record.late_p99, record.late_max, record.run_p50, record.run_p99 = late
+        record.read, record.write, record.step = longest
+        record.ticks, record.missed = self._handle.tick, missed
+        record.realtime = realtime
+        self._servo_reports.send(record)

@@ -1,0 +1,262 @@
+"""The pilot process: device ↔ Pilot.step ↔ bus, once every tick of the device's rate.
+
+handle ──► engagement ──► Pilot.step ──► force on the hand
+              ▲               └────────► setpoint, controller's state, handle on the bus
+vehicle's state, commands
+"""
+
+from __future__ import annotations
+
+import gc
+import time
+
+from drivers.device import ZERO3, DeviceError, DeviceInfo, HandleState, HapticDevice
+from drivers.registry import make_device
+from groundstation.bus import Bus
+from groundstation.child import Lifeline, run_child
+from groundstation.clock import Clock, Every, Pacer
+from groundstation.messages import COMMAND, Command, CommandKind, Phase, Severity
+from groundstation.pilot.device_keeper import ABSENT, DeviceKeeper
+from groundstation.pilot.engagement import (
+    Conditions,
+    Ending,
+    Engagement,
+    advance,
+    believable,
+    centred,
+    disengage,
+    engage,
+)
+from groundstation.pilot.lateness import Lateness
+from groundstation.pilot.outbox import Outbox
+from groundstation.pilot.pilot import Inputs, Memory, Outputs, Pilot
+from groundstation.pilot.realtime import request_realtime
+from groundstation.pilot.sight import ZERO4
+from groundstation.pilot.vehicle_feed import VehicleFeed
+from groundstation.run import Run
+
+ROLE = "pilot"
+REPORT_S = 0.5
+# Waited for awake before a deadline, where real-time priority makes that worth it, s.
+SPIN_S = 1e-4
+AT_REST = HandleState(ZERO3, ZERO3, 0.0, 0, homed=False, device_time=0.0)
+
+# After these the link steers by itself; after DISENGAGE the vehicle holds.
+_RELEASING = frozenset(
+    {
+        CommandKind.DISENGAGE,
+        CommandKind.HOLD,
+        CommandKind.LAND,
+        CommandKind.RETURN,
+        CommandKind.DISARM,
+        CommandKind.KILL,
+    }
+)
+
+
+class Servo:
+    """Everything between the device and the bus but the waiting: `tick` is one turn.
+
+    Args:
+        run: Settings.
+        bus: Where records come from and go to.
+        device: Not yet open.
+        clock: Monotonic seconds.
+
+    Attributes:
+        rate: Ticks a second that the device is made for, Hz.
+    """
+
+    def __init__(self, run: Run, bus: Bus, device: HapticDevice, clock: Clock = time.monotonic) -> None:
+        self._settings = run.settings
+        self._bus = bus
+        self._clock = clock
+        self._keeper = DeviceKeeper(device, bus.event, clock)
+        self._feed = VehicleFeed(bus)
+        self._commands = bus.subscriber(COMMAND)
+        self._outbox = Outbox(bus)
+        self._setpoint_due = Every(1.0 / run.settings.rates.setpoint)
+        self._report_due = Every(REPORT_S)
+        self._engagement = Engagement()
+        self._reason = ""
+        self._last_t = clock()
+        self._step_s = 0.0
+        self._fit(ABSENT)
+
+    def tick(self, now: float, dt: float) -> None:
+        """Run one turn.
+
+        Args:
+            now: Monotonic s.
+            dt: Since the last turn by the loop's pace, s.
+        """
+        handle = self._keeper.read(now)
+        if self._keeper.info is not self._info:
+            self._fit(self._keeper.info)
+        self._feed.update()
+        hand, conditions = self._look(now, handle)
+        before = self._engagement.phase
+        cut = self._decide(conditions) or not hand.homed
+        phase = self._engagement.phase
+        age = conditions.state_age
+        inputs = Inputs(dt, phase, cut, hand, self._feed.sample, age)
+        began = self._clock()
+        self._memory, outputs = self._pilot.step(self._memory, inputs)
+        self._step_s = max(self._step_s, self._clock() - began)
+        self._keeper.write(outputs.force)
+        self._publish(conditions, hand, outputs, changed=phase is not before)
+
+    def report(self, now: float, late: Lateness, missed: int, *, realtime: bool) -> None:
+        """Tell twice a second which device there is and how the servo keeps its time."""
+        if not self._report_due.due(now):
+            return
+        keeper = self._keeper
+        self._outbox.device_report(now, keeper.info, present=keeper.present, homed=self._homed)
+        longest = (keeper.read_s, keeper.write_s, self._step_s)
+        self._outbox.servo_report(now, self.rate, late.report(), longest, missed, realtime=realtime)
+        keeper.read_s = keeper.write_s = self._step_s = 0.0
+        if self._engagement.phase is Phase.DISENGAGED:
+            self._outbox.setpoint(now, ZERO4, 0.0, active=False)
+
+    def close(self) -> None:
+        """Leave no force on the hand and no setpoint for the vehicle."""
+        try:
+            self._keeper.close()
+        finally:
+            self._outbox.setpoint(self._clock(), ZERO4, 0.0, active=False)
+
+    def _fit(self, info: DeviceInfo) -> None:
+        """Fit the controller to a device."""
+        self._info = info
+        self.rate = info.rate
+        self._pilot = Pilot(self._settings, info)
+        self._memory = Memory()
+        self._homed = False
+
+    def _look(self, now: float, handle: HandleState | None) -> tuple[HandleState, Conditions]:
+        """Return a handle that can be believed, and what coupling depends on."""
+        feed = self._feed
+        sound = handle is None or believable(
+            (*handle.position, *handle.velocity, handle.yaw, handle.device_time)
+        )
+        hand = handle if handle is not None and sound else AT_REST
+        self._homed = hand.homed
+        conditions = Conditions(
+            t=now,
+            gap=now - self._last_t,
+            believable=sound and feed.believable,
+            present=handle is not None,
+            homed=handle is not None and handle.homed,
+            centred=centred(hand, self._info, self._settings.mapping.yaw_range),
+            handle_age=now - hand.device_time,
+            connected=feed.connected,
+            armed=feed.armed,
+            in_air=feed.in_air,
+            mode=feed.mode,
+            streaming=feed.streaming,
+            state_age=now - feed.state_t,
+            state_valid=feed.valid,
+            boots=feed.boots,
+        )
+        self._last_t = now
+        return hand, conditions
+
+    def _decide(self, conditions: Conditions) -> bool:
+        """Follow commands and conditions; return whether the force must be gone at once."""
+        for command in self._commands.drain():
+            self._obey(command, conditions)
+        phase = self._engagement.phase
+        self._engagement, ending = advance(self._engagement, conditions, self._settings.safety)
+        if ending:
+            self._end(ending)
+            return ending.cut
+        if self._engagement.phase is not phase:
+            self._bus.event(Severity.INFO, "Engaged: the vehicle follows the hand.")
+        return False
+
+    def _obey(self, command: Command, conditions: Conditions) -> None:
+        kind = CommandKind(command.kind)
+        if kind is CommandKind.ENGAGE:
+            self._engage(command, conditions)
+        elif kind in _RELEASING:
+            words = f"the operator commanded {kind.name.capitalize()}"
+            self._engagement, ending = disengage(self._engagement, words)
+            if ending:
+                self._end(ending)
+            if kind is CommandKind.DISENGAGE:
+                self._outbox.answer(conditions.t, command, "")
+
+    def _engage(self, command: Command, conditions: Conditions) -> None:
+        before = self._engagement.phase
+        self._engagement, words = engage(self._engagement, conditions, self._settings.safety)
+        if words:
+            self._reason = words
+            refusal = f"Engage refused: {words}."
+            self._bus.event(Severity.WARNING, refusal)
+            self._outbox.answer(conditions.t, command, refusal)
+            return
+        self._reason = ""
+        self._outbox.answer(conditions.t, command, "")
+        if self._engagement.phase is not before:
+            self._bus.event(Severity.INFO, "Engaging: waiting for the vehicle to confirm Offboard.")
+
+    def _end(self, ending: Ending) -> None:
+        self._reason = ending.words
+        self._bus.event(ending.severity, f"Disengaged: {ending.words}.")
+
+    def _publish(self, c: Conditions, hand: HandleState, outputs: Outputs, *, changed: bool) -> None:
+        """Send the handle; at 50 Hz, and at once on a change, the setpoint and the controller's state."""
+        self._outbox.handle(c.t, hand, outputs.force, present=self._keeper.present)
+        due = self._setpoint_due.due(c.t)
+        if not (due or changed):
+            return
+        phase = self._engagement.phase
+        if changed or phase is not Phase.DISENGAGED:
+            active = phase is not Phase.DISENGAGED
+            self._outbox.setpoint(c.t, outputs.setpoint, hand.device_time, active=active)
+        self._outbox.pilot_state(
+            c.t, outputs, c.state_age, phase, self._reason, centred=c.present and c.centred
+        )
+
+
+def body(run: Run, bus: Bus, lifeline: Lifeline) -> None:
+    """Run the servo until the lifeline ends.
+
+    Raises:
+        SystemExit: There is no such device; in words.
+    """
+    try:
+        device = make_device(run.device)
+    except DeviceError as error:
+        raise SystemExit(str(error)) from error
+    servo = Servo(run, bus, device)
+    words = request_realtime()
+    if words:
+        bus.event(Severity.INFO, words)
+    # The loop makes no cycles; a collection in the middle of a tick would only be late.
+    gc.freeze()
+    gc.disable()
+    try:
+        turn(servo, lifeline, realtime=not words)
+    finally:
+        servo.close()
+
+
+def turn(servo: Servo, lifeline: Lifeline, *, realtime: bool) -> None:
+    """Keep the servo ticking at its device's rate."""
+    rate = servo.rate
+    pacer = Pacer(1.0 / rate, spin=SPIN_S if realtime else 0.0)
+    late = Lateness(int(2 * REPORT_S * rate))
+    while lifeline.holds():
+        late.add(pacer.wait())
+        now = time.monotonic()
+        servo.tick(now, pacer.elapsed)
+        servo.report(now, late, pacer.missed, realtime=realtime)
+        if servo.rate != rate:
+            rate = servo.rate
+            pacer.restart(1.0 / rate)
+            late = Lateness(int(2 * REPORT_S * rate))
+
+
+if __name__ == "__main__":
+    run_child(ROLE, body)

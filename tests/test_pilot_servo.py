@@ -1,0 +1,420 @@
+"""The servo with a real device driver and a real bus, tick by tick in virtual time; and once as a process."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from math import hypot, nan
+from pathlib import Path
+
+import pytest
+
+from drivers.stick import StickSender
+from drivers.virtual import VirtualHandle
+from groundstation.bus import Bus, new_run_id, sweep
+from groundstation.config import Settings
+from groundstation.messages import (
+    COMMAND,
+    COMMAND_ANSWER,
+    DEVICE_REPORT,
+    EVENT,
+    HANDLE,
+    HEARTBEAT,
+    PILOT_STATE,
+    SERVO_REPORT,
+    SETPOINT,
+    VEHICLE_STATE,
+    VEHICLE_STATUS,
+    Command,
+    CommandKind,
+    FlightMode,
+    Phase,
+    Severity,
+    Stream,
+    VehicleState,
+    VehicleStatus,
+)
+from groundstation.pilot.lateness import Lateness
+from groundstation.pilot.servo import Servo
+from groundstation.run import Run, write_run
+
+DT = 0.001
+
+
+def make_run(run_id: str, device: str) -> Run:
+    return Run(run_id, "udpin://127.0.0.1:0", True, device, None, "", Settings(), "", "", "")
+
+
+class World:
+    """The rest of the program as the servo sees it on the bus: link, console, and whoever holds the stick."""
+
+    def __init__(self, run_id: str, socket: str) -> None:
+        self.bus = Bus(run_id, "test")
+        self._states = self.bus.publisher(VEHICLE_STATE)
+        self._statuses = self.bus.publisher(VEHICLE_STATUS)
+        self._commands = self.bus.publisher(COMMAND)
+        self.setpoints = self.bus.subscriber(SETPOINT)
+        self.pilots = self.bus.subscriber(PILOT_STATE)
+        self.answers = self.bus.subscriber(COMMAND_ANSWER)
+        self.events = self.bus.subscriber(EVENT)
+        self.handles = self.bus.subscriber(HANDLE)
+        self.stick = StickSender(socket)
+        self.state = VehicleState(valid=1, boot_t=30.0)
+        self.state.position[:] = (1.0, 2.0, 3.0, 0.0)
+        self.status = VehicleStatus(connected=1, armed=1, in_air=1, mode=FlightMode.HOLD)
+        self.number = 0
+
+    def say(self, now: float) -> None:
+        self.state.t = self.status.t = now
+        self._states.send(self.state)
+        self._statuses.send(self.status)
+
+    def confirm(self, mode: FlightMode = FlightMode.OFFBOARD, stream: Stream = Stream.FLYING) -> None:
+        self.status.mode, self.status.streaming = mode, stream
+
+    def command(self, kind: CommandKind, now: float) -> int:
+        self.number += 1
+        self._commands.send(Command(t=now, number=self.number, kind=kind, source=b"test"))
+        return self.number
+
+    def close(self) -> None:
+        self.stick.close()
+        self.bus.close()
+
+
+class Bench:
+    """A servo in virtual time."""
+
+    def __init__(self, tmp_path: Path) -> None:
+        self.now = 1000.0
+        self.run_id = new_run_id()
+        self.run_ = make_run(self.run_id, "")
+        write_run(self.run_)
+        socket = str(tmp_path / "hand.sock")
+        self.world = World(self.run_id, socket)
+        self.bus = Bus(self.run_id, "pilot")
+        self.device = VirtualHandle(socket, lambda: self.now)
+        self.servo = Servo(self.run_, self.bus, self.device, lambda: self.now)
+        self.stick: tuple[float, float, float] | None = (0.0, 0.0, 0.0)
+        self.vehicle = True
+
+    def run(self, seconds: float) -> None:
+        for tick in range(round(seconds / DT)):
+            self.now += DT
+            if self.stick is not None and tick % 10 == 0:
+                self.world.stick.send(self.stick, 0.0, 0, self.now)
+            if self.vehicle and tick % 20 == 0:
+                self.world.say(self.now)
+            self.servo.tick(self.now, DT)
+
+    def phase(self) -> Phase:
+        newest = self.world.pilots.newest()
+        assert newest is not None
+        return Phase(newest.phase)
+
+    def engage(self) -> None:
+        self.run(1.2)
+        self.world.command(CommandKind.ENGAGE, self.now)
+        self.run(0.2)
+        self.world.confirm(FlightMode.HOLD, Stream.STARTING)
+        self.run(0.2)
+        self.world.confirm()
+        self.run(0.1)
+        assert self.phase() is Phase.ENGAGED
+        self.said()
+
+    def said(self) -> list[tuple[Severity, str]]:
+        return [(Severity(event.severity), event.text.decode()) for event in self.world.events.drain()]
+
+    def close(self) -> None:
+        self.servo.close()
+        self.bus.close()
+        self.world.close()
+        sweep(self.run_id)
+
+
+@pytest.fixture
+def bench(tmp_path: Path) -> Iterator[Bench]:
+    bench = Bench(tmp_path)
+    yield bench
+    bench.close()
+
+
+def test_engaging_streams_zero_until_the_vehicle_confirms_then_follows_the_hand(bench: Bench) -> None:
+    bench.run(1.2)
+    number = bench.world.command(CommandKind.ENGAGE, bench.now)
+    list(bench.world.setpoints.drain())
+    bench.run(0.5)
+    answer = bench.world.answers.newest()
+    assert answer is not None
+    assert (answer.number, answer.kind, answer.ok) == (number, CommandKind.ENGAGE, 1)
+    assert bench.phase() is Phase.ENGAGING
+    bench.stick = (0.1, 0.0, 0.0)
+    bench.run(0.5)
+    waiting = list(bench.world.setpoints.drain())
+    assert len(waiting) in {50, 51}
+    assert all(setpoint.active and tuple(setpoint.velocity) == (0.0,) * 4 for setpoint in waiting)
+    bench.world.confirm()
+    bench.run(1.0)
+    assert bench.phase() is Phase.ENGAGED
+    flown = list(bench.world.setpoints.drain())
+    assert flown[-1].velocity[0] > 1.0
+    assert flown[-1].number - flown[0].number == len(flown) - 1
+    assert bench.now - flown[-1].handle_t < 0.05
+    # The vehicle stands still, so p_h runs ahead of it and the hand is pushed back.
+    assert bench.device.force[0] < -1.0
+    handle = bench.world.handles.newest()
+    assert handle is not None
+    assert tuple(handle.force) == bench.device.force
+    assert (Severity.INFO, "Engaged: the vehicle follows the hand.") in bench.said()
+
+
+def test_an_act_that_is_refused_says_why(bench: Bench) -> None:
+    bench.stick = (0.05, 0.0, 0.0)
+    bench.run(1.2)
+    for change, words in (({"armed": 0}, "not armed"), ({"armed": 1}, "centre")):
+        for name, value in change.items():
+            setattr(bench.world.status, name, value)
+        bench.run(0.05)
+        bench.world.command(CommandKind.ENGAGE, bench.now)
+        bench.run(0.05)
+        answer = bench.world.answers.newest()
+        assert answer is not None
+        assert not answer.ok
+        assert answer.text.decode().startswith("Engage refused: ")
+        assert words in answer.text.decode()
+        state = bench.world.pilots.newest()
+        assert state is not None
+        assert words in state.reason.decode()
+        assert bench.phase() is Phase.DISENGAGED
+
+
+@pytest.mark.parametrize(
+    "kind",
+    [
+        CommandKind.DISENGAGE,
+        CommandKind.HOLD,
+        CommandKind.LAND,
+        CommandKind.RETURN,
+        CommandKind.DISARM,
+        CommandKind.KILL,
+    ],
+)
+def test_every_act_that_steers_otherwise_lets_go_and_only_disengage_is_answered(
+    bench: Bench, kind: CommandKind
+) -> None:
+    bench.engage()
+    list(bench.world.answers.drain())
+    bench.world.command(kind, bench.now)
+    bench.run(0.002)
+    setpoint = bench.world.setpoints.newest()
+    assert setpoint is not None
+    assert not setpoint.active
+    assert tuple(setpoint.velocity) == (0.0,) * 4
+    assert [answer.kind for answer in bench.world.answers.drain()] == [kind] * (kind is CommandKind.DISENGAGE)
+    assert [severity for severity, _ in bench.said()] == [Severity.INFO]
+
+
+def lose_stick(bench: Bench) -> None:
+    bench.stick = None
+
+
+def lose_vehicle(bench: Bench) -> None:
+    bench.vehicle = False
+
+
+def take_away(bench: Bench) -> None:
+    bench.world.confirm(FlightMode.POSITION)
+
+
+def land(bench: Bench) -> None:
+    bench.world.status.in_air = 0
+
+
+def disarm(bench: Bench) -> None:
+    bench.world.status.armed = 0
+
+
+def reboot(bench: Bench) -> None:
+    bench.world.state.boot_t = 0.5
+
+
+def spoil(bench: Bench) -> None:
+    bench.world.state.velocity[1] = nan
+
+
+def distrust(bench: Bench) -> None:
+    bench.world.state.valid = 0
+
+
+def stall(bench: Bench) -> None:
+    bench.now += 0.2
+    bench.world.say(bench.now)
+    bench.world.stick.send((0.0, 0.0, 0.0), 0.0, 0, bench.now)
+
+
+def end_stream(bench: Bench) -> None:
+    bench.world.confirm(stream=Stream.ENDED)
+
+
+@pytest.mark.parametrize(
+    ("fault", "words", "within"),
+    [
+        (lose_stick, "handle's sample is 0.10 s old", 0.11),
+        (lose_vehicle, "position is 0.5 s old", 0.55),
+        (take_away, "went to POSITION", 0.05),
+        (land, "on the ground", 0.05),
+        (disarm, "not armed", 0.05),
+        (reboot, "rebooted", 0.05),
+        (spoil, "number", 0.05),
+        (distrust, "trust", 0.05),
+        (stall, "servo stood still for 0.20 s", 0.05),
+        (end_stream, "link stopped", 0.05),
+    ],
+)
+def test_every_fault_ends_in_no_force_no_setpoint_and_words(
+    bench: Bench, fault: object, words: str, within: float
+) -> None:
+    bench.engage()
+    bench.stick = (0.1, 0.0, 0.0)
+    bench.run(1.0)
+    assert hypot(*bench.device.force) > 1.0
+    fault(bench)
+    bench.run(within)
+    setpoint = bench.world.setpoints.newest()
+    assert setpoint is not None
+    assert not setpoint.active
+    assert tuple(setpoint.velocity) == (0.0,) * 4
+    assert [said for said in bench.said() if said[0] is Severity.ALARM and words in said[1]]
+    bench.run(0.1)
+    assert bench.device.force == (0.0, 0.0, 0.0)
+    # What comes back does not engage by itself.
+    bench.stick, bench.vehicle = (0.0, 0.0, 0.0), True
+    bench.world.state.velocity[1] = 0.0
+    bench.world.state.valid = bench.world.status.armed = bench.world.status.in_air = 1
+    bench.world.confirm()
+    bench.run(1.5)
+    assert bench.phase() is Phase.DISENGAGED
+    assert not any(later.active for later in bench.world.setpoints.drain())
+
+
+def test_nothing_that_is_not_a_number_reaches_the_bus(bench: Bench) -> None:
+    bench.engage()
+    bench.world.state.position[0] = nan
+    bench.run(0.1)
+    state = bench.world.pilots.newest()
+    assert state is not None
+    for numbers in (state.p_h, state.p_h_rate, state.error, state.v_ref, state.force):
+        assert all(number == number for number in numbers)
+    assert state.state_age > 0.05
+
+
+def test_the_reports_tell_device_and_timing_and_the_idle_setpoint_is_inactive(bench: Bench) -> None:
+    devices = bench.world.bus.subscriber(DEVICE_REPORT)
+    servos = bench.world.bus.subscriber(SERVO_REPORT)
+    late = Lateness(100)
+    bench.run(1.2)
+    late.add(0.002)
+    bench.servo.report(bench.now, late, 7, realtime=True)
+    device, servo, setpoint = devices.newest(), servos.newest(), bench.world.setpoints.newest()
+    assert device is not None
+    assert servo is not None
+    assert setpoint is not None
+    assert (device.name, device.renders, device.present, device.homed) == (
+        b"On-screen stick",
+        b"nothing",
+        1,
+        1,
+    )
+    assert (device.workspace, device.force_limit) == (0.1, 10.0)
+    assert (servo.rate, servo.late_max, servo.ticks, servo.missed, servo.realtime) == (
+        1000.0,
+        0.002,
+        1200,
+        7,
+        1,
+    )
+    assert not setpoint.active
+    bench.servo.report(bench.now + 0.3, late, 7, realtime=True)
+    assert servos.newest() is servo
+
+
+@pytest.fixture
+def process(tmp_path: Path) -> Iterator[tuple[World, subprocess.Popen[bytes]]]:
+    run_id, socket = new_run_id(), str(tmp_path / "hand.sock")
+    path = write_run(make_run(run_id, f"virtual:{socket}"))
+    world = World(run_id, socket)
+    popen = subprocess.Popen(
+        [sys.executable, "-m", "groundstation.pilot.servo", str(path)], stderr=subprocess.PIPE
+    )
+    yield world, popen
+    popen.kill()
+    popen.communicate()
+    world.close()
+    sweep(run_id)
+
+
+def keep_going(world: World, until: object, seconds: float = 20.0) -> bool:
+    """Be link and hand in real time until something is so."""
+    end = time.monotonic() + seconds
+    while time.monotonic() < end:
+        now = time.monotonic()
+        world.stick.send((0.0, 0.0, 0.0), 0.0, 0, now)
+        world.say(now)
+        if until():
+            return True
+        time.sleep(0.01)
+    return False
+
+
+def engaged(world: World, phase: Phase) -> bool:
+    state = world.pilots.newest()
+    return state is not None and state.phase == phase
+
+
+@pytest.mark.flight
+def test_the_process_engages_streams_and_ends_cleanly_on_sigterm(
+    process: tuple[World, subprocess.Popen[bytes]],
+) -> None:
+    world, popen = process
+    beats = world.bus.subscriber(HEARTBEAT)
+    servos = world.bus.subscriber(SERVO_REPORT)
+    centred = lambda: (state := world.pilots.newest()) is not None and bool(state.centred)  # noqa: E731
+    assert keep_going(world, centred), popen.stderr
+    world.command(CommandKind.ENGAGE, time.monotonic())
+    assert keep_going(world, lambda: engaged(world, Phase.ENGAGING))
+    world.confirm()
+    assert keep_going(world, lambda: engaged(world, Phase.ENGAGED))
+    list(world.setpoints.drain())
+    seen: list = []
+    assert keep_going(world, lambda: seen.extend(world.setpoints.drain()) or len(seen) >= 20)
+    assert all(setpoint.active for setpoint in seen)
+    assert {(beat.role, beat.pid) for beat in beats.drain()} == {(b"pilot", popen.pid)}
+    assert keep_going(world, lambda: (report := servos.newest()) is not None and report.ticks > 100)
+    popen.send_signal(signal.SIGTERM)
+    assert popen.wait(10) == 0, popen.stderr
+    last = list(world.setpoints.drain())[-1]
+    assert not last.active
+    assert tuple(last.velocity) == (0.0,) * 4
+    with pytest.raises(ProcessLookupError):
+        os.kill(popen.pid, 0)
+
+
+@pytest.mark.flight
+def test_an_unknown_device_ends_the_process_with_a_sentence(tmp_path: Path) -> None:
+    run_id = new_run_id()
+    path = write_run(make_run(run_id, "no-such-device:1"))
+    try:
+        ended = subprocess.run(
+            [sys.executable, "-m", "groundstation.pilot.servo", str(path)],
+            check=False,
+            capture_output=True,
+            timeout=30,
+        )
+        assert ended.returncode == 1
+        assert ended.stderr.decode().strip().count("\n") == 0
+        assert "no such haptic device" in ended.stderr.decode()
+    finally:
+        sweep(run_id)

@@ -81,6 +81,7 @@ class Servo:
         self._reason = ""
         self._last_t = clock()
         self._step_s = 0.0
+        self._told_present = False
         self._fit(ABSENT)
 
     def tick(self, now: float, dt: float) -> None:
@@ -107,23 +108,27 @@ class Servo:
         self._publish(conditions, hand, outputs, changed=phase is not before)
 
     def report(self, now: float, late: Lateness, missed: int, *, realtime: bool) -> None:
-        """Tell twice a second which device there is and how the servo keeps its time."""
-        if not self._report_due.due(now):
-            return
+        """Tell twice a second which device there is, at once when it comes or goes, and how time is kept."""
         keeper = self._keeper
-        self._outbox.device_report(now, keeper.info, present=keeper.present, homed=self._homed)
+        due = self._report_due.due(now)
+        if due or keeper.present is not self._told_present:
+            self._told_present = keeper.present
+            self._outbox.device_report(now, keeper.info, present=keeper.present, homed=self._homed)
+        if not due:
+            return
         longest = (keeper.read_s, keeper.write_s, self._step_s)
         self._outbox.servo_report(now, self.rate, late.report(), longest, missed, realtime=realtime)
         keeper.read_s = keeper.write_s = self._step_s = 0.0
         if self._engagement.phase is Phase.DISENGAGED:
-            self._outbox.setpoint(now, ZERO4, 0.0, active=False)
+            self._outbox.setpoint(now, ZERO4, now, active=False)
 
     def close(self) -> None:
         """Leave no force on the hand and no setpoint for the vehicle."""
         try:
             self._keeper.close()
         finally:
-            self._outbox.setpoint(self._clock(), ZERO4, 0.0, active=False)
+            now = self._clock()
+            self._outbox.setpoint(now, ZERO4, now, active=False)
 
     def _fit(self, info: DeviceInfo) -> None:
         """Fit the controller to a device."""

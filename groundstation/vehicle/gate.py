@@ -101,6 +101,14 @@ def message_number(frame: bytes) -> int:
     return -1
 
 
+def origin(frame: bytes) -> tuple[int, int, int]:
+    """Return a frame's sequence number, system and component; -1 each where it is not MAVLink."""
+    if message_number(frame) < 0:
+        return -1, -1, -1
+    start = 4 if frame[0] == _V2 else 2
+    return frame[start], frame[start + 1], frame[start + 2]
+
+
 def split_frames(data: bytes) -> list[bytes]:
     """Cut well-formed bytes, as MAVSDK hands them out, into MAVLink frames."""
     frames: list[bytes] = []

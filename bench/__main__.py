@@ -1,0 +1,41 @@
+"""Measure and print tables: `python -m bench [NAME ...] [--short]`.
+
+Absolute times depend on the machine; what is compared is compared within one run.
+"""
+
+from __future__ import annotations
+
+import argparse
+import importlib
+import os
+import platform
+
+BENCHES = {
+    "help": "processor time of --help",
+    "start": "from the command to a vehicle that may take off",
+    "step_to_wire": "from a step of the handle to the datagram that carries it",
+    "paper": "the paper's mission, headless",
+}
+
+
+def main() -> None:
+    """Run the benches asked for."""
+    listed = "\n".join(f"  {name:<14} {what}" for name, what in BENCHES.items())
+    parser = argparse.ArgumentParser(
+        prog="python -m bench",
+        description=__doc__,
+        epilog=f"benches:\n{listed}",
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("names", nargs="*", choices=[*BENCHES, []], metavar="NAME", help="default: all")
+    parser.add_argument("--short", action="store_true", help="few repetitions, for a look or for CI")
+    asked = parser.parse_args()
+    print(f"Python {platform.python_version()}, {os.cpu_count()} cores")
+    for name in asked.names or BENCHES:
+        print(f"\n{name}: {BENCHES[name]}")
+        for line in importlib.import_module(f"bench.{name}").main(short=asked.short):
+            print(f"  {line}", flush=True)
+
+
+if __name__ == "__main__":
+    main()

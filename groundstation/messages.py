@@ -210,8 +210,8 @@ class VehicleStatus(Record):
         rtt: Round trip by TIMESYNC, s; NaN before the first answer.
         sent: Setpoint frames that left.
         dropped: Setpoint frames the gate kept back.
-        streaming: State of the setpoint stream, `groundstation.vehicle.offboard.Stream`: 0 idle, 1 starting,
-            2 flying (the vehicle confirmed offboard for this very stream), 3 ended.
+        streaming: State of the setpoint stream, a `Stream`; FLYING only once the vehicle has confirmed offboard
+            for this very stream.
     """
 
     heard_t: float

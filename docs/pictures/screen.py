@@ -1,0 +1,73 @@
+"""Make the pictures of the screen from a canned flight: `python docs/pictures/screen.py [FOLDER]`.
+
+Writes screen-80x24 and screen-200x60 as SVG, and as PNG where rsvg-convert is installed.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "tests"))
+
+from canned_flight import START, CannedFlight, CannedReader, CannedStick, CannedSupervisor, canned_run  # noqa: E402
+from terminal_svg import crisp  # noqa: E402
+
+from groundstation.console import Snapshot  # noqa: E402
+from groundstation.tui.app import FlightApp  # noqa: E402
+
+SIZES = ((80, 24), (120, 40), (200, 60))
+FLOWN_S = 15.0
+FRAME_S = 0.1
+
+
+async def picture(folder: Path, width: int, height: int) -> Path:
+    """Fly to the moment of the picture and save it."""
+    run = canned_run()
+    flight = CannedFlight(run)
+    reader = CannedReader(flight.snapshot())
+    app = FlightApp(run, reader, CannedSupervisor(), CannedStick(), clock=lambda: START)
+    async with app.run_test(size=(width, height)) as pilot:
+        while flight.elapsed < FLOWN_S:
+            flight.advance(FRAME_S)
+            reader.shown = flight.snapshot()
+            if flight.engaged:
+                # The hand on the stick that gives the handle's position.
+                for axis, share in enumerate(stick_shares(reader.shown)):
+                    app.hand.place(axis, share)
+            app.pull()
+        for _ in range(6):
+            app.pull()
+        await pilot.pause()
+        name = f"screen-{width}x{height}.svg"
+        (folder / name).write_text(crisp(app.export_screenshot()), encoding="utf-8")
+    return folder / name
+
+
+def stick_shares(snapshot: Snapshot) -> list[float]:
+    """Return where the stick is for a handle to be where it is."""
+    assert snapshot.handle is not None
+    assert snapshot.device is not None
+    return [value / snapshot.device.workspace for value in snapshot.handle.position] + [snapshot.handle.yaw]
+
+
+def main() -> None:
+    """Make all pictures."""
+    folder = Path(sys.argv[1]) if len(sys.argv) > 1 else ROOT / "docs" / "images"
+    folder.mkdir(parents=True, exist_ok=True)
+    converter = shutil.which("rsvg-convert")
+    for width, height in SIZES:
+        svg = asyncio.run(picture(folder, width, height))
+        print(svg)
+        if converter:
+            subprocess.run(
+                [converter, "--width", "1600", "--output", str(svg.with_suffix(".png")), str(svg)], check=True
+            )
+
+
+if __name__ == "__main__":
+    main()

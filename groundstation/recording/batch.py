@@ -1,0 +1,84 @@
+"""What came over the bus since the last batch, and the taps it comes from. Imports nothing heavy."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any, TypeVar, cast
+
+from groundstation.bus import Bus, Subscriber
+from groundstation.messages import (
+    COMMAND,
+    COMMAND_ANSWER,
+    DEVICE_REPORT,
+    EVENT,
+    HANDLE,
+    HEARTBEAT,
+    MISSION_PROGRESS,
+    PILOT_STATE,
+    SERVO_REPORT,
+    SETPOINT,
+    VEHICLE_STATE,
+    VEHICLE_STATUS,
+    Record,
+    Topic,
+)
+
+R = TypeVar("R", bound=Record)
+
+TOPICS: tuple[Topic[Any], ...] = (
+    HANDLE,
+    SETPOINT,
+    PILOT_STATE,
+    VEHICLE_STATE,
+    VEHICLE_STATUS,
+    COMMAND,
+    COMMAND_ANSWER,
+    EVENT,
+    SERVO_REPORT,
+    DEVICE_REPORT,
+    MISSION_PROGRESS,
+    HEARTBEAT,
+)
+
+
+def text(field: bytes) -> str:
+    """Return a record's text field; bytes that are no UTF-8 are replaced."""
+    return field.decode(errors="replace")
+
+
+class Batch:
+    """Records of one stretch of time, in the order they came, topic by topic."""
+
+    def __init__(self) -> None:
+        self._records: dict[str, list[Record]] = {topic.name: [] for topic in TOPICS}
+
+    def of(self, topic: Topic[R]) -> list[R]:
+        """Return the records of a topic."""
+        return cast(list[R], self._records[topic.name])
+
+    def add(self, topic: Topic[R], records: Iterable[R]) -> int:
+        """Take records in and return how many they were."""
+        kept = self._records[topic.name]
+        before = len(kept)
+        kept.extend(records)
+        return len(kept) - before
+
+
+class Taps:
+    """Subscribers to every topic, there from the first moment so that nothing is lost."""
+
+    def __init__(self, bus: Bus) -> None:
+        self._taps: list[tuple[Topic[Any], Subscriber[Any]]] = [
+            (topic, bus.subscriber(topic)) for topic in TOPICS
+        ]
+        self._batch = Batch()
+
+    def drain(self) -> bool:
+        """Take in what has come; say whether the handle's tap, which fills first, may have overrun."""
+        taken = {topic.name: self._batch.add(topic, tap.drain()) for topic, tap in self._taps}
+        return taken[HANDLE.name] >= HANDLE.depth
+
+    def take(self) -> Batch:
+        """Return what has been drained since last time."""
+        batch, self._batch = self._batch, Batch()
+        return batch

@@ -1,0 +1,162 @@
+"""The layout in which a recording opens: scene and events on the left, plots on the right, states below."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import rerun.blueprint as rrb
+from rerun.blueprint.api import VisualizerLike
+from rerun.blueprint.encodings import TextLogColumn
+from rerun.encodings import EntityPathLike
+
+from groundstation.recording import palette, schema
+from groundstation.recording.scene import extent
+from groundstation.training.mission import Mission
+
+_WHOLE_WAY = rrb.VisibleTimeRanges(
+    timeline=schema.TIMELINE,
+    start=rrb.TimeRangeBoundary.infinite(),
+    end=rrb.TimeRangeBoundary.cursor_relative(),
+)
+_TRAILS: dict[EntityPathLike, VisualizerLike | Iterable[VisualizerLike]] = {
+    schema.VEHICLE_TRAIL: _WHOLE_WAY,
+    schema.HAND_TRAIL: _WHOLE_WAY,
+}
+_AXIS = rrb.TimeAxis(link=rrb.components.LinkAxis.LinkToGlobal)
+# The velocities share their colours: one legend is enough.
+_FIRST = "Forward velocity"
+_BACKGROUND: palette.Colour = (20, 23, 28)
+_GRID = (120, 128, 140, 90)
+
+
+def blueprint(mission: Mission | None) -> rrb.Blueprint:
+    """Return the layout.
+
+    Args:
+        mission: What the camera must have in view; None for free flight.
+    """
+    left = rrb.Vertical(
+        rrb.Tabs(_scene(mission), _chase(), active_tab=0),
+        rrb.Tabs(
+            _events(), rrb.TextDocumentView(origin=schema.ABOUT, name="About this flight"), active_tab=0
+        ),
+        row_shares=[5, 2],
+    )
+    right = rrb.Tabs(_flight(), _hand(), _machinery(), active_tab=0)
+    return rrb.Blueprint(
+        rrb.Vertical(
+            rrb.Horizontal(left, right, column_shares=[5, 6]),
+            _states("Mode, hand, mission, vehicle", schema.MODE, schema.PHASE, schema.STAGE, schema.VEHICLE),
+            row_shares=[10, 3],
+        ),
+        rrb.BlueprintPanel(state="collapsed"),
+        rrb.SelectionPanel(state="collapsed"),
+        rrb.TimePanel(state="collapsed", timeline=schema.TIMELINE),
+    )
+
+
+def _scene(mission: Mission | None) -> rrb.Spatial3DView:
+    low, high = extent(mission)
+    middle = (low + high) / 2
+    size = max(float((high - low)[:2].max()), 6.0)
+    eye = rrb.EyeControls3D(
+        kind=rrb.Eye3DKind.Orbital,
+        position=(middle[0] - 0.3 * size, middle[1] - 0.75 * size, middle[2] + 0.4 * size),
+        look_target=tuple(middle),
+        eye_up=(0, 0, 1),
+    )
+    return _space(f"Scene (force arrow: {schema.ARROW_M_PER_N} m a newton)", eye)
+
+
+def _chase() -> rrb.Spatial3DView:
+    eye = rrb.EyeControls3D(
+        kind=rrb.Eye3DKind.Orbital,
+        position=(-6.0, -2.5, 3.2),
+        look_target=(0, 0, 0),
+        eye_up=(0, 0, 1),
+        tracking_entity=schema.CHASED,
+    )
+    return _space("Chase", eye)
+
+
+def _space(name: str, eye: rrb.EyeControls3D) -> rrb.Spatial3DView:
+    return rrb.Spatial3DView(
+        origin=schema.WORLD,
+        name=name,
+        overrides=_TRAILS,
+        background=rrb.Background(color=_BACKGROUND),
+        line_grid=rrb.LineGrid3D(spacing=1.0, color=_GRID),
+        eye_controls=eye,
+    )
+
+
+def _events() -> rrb.TextLogView:
+    columns = [
+        TextLogColumn("loglevel"),
+        TextLogColumn("body"),
+    ]
+    return rrb.TextLogView(
+        origin=schema.EVENTS, name="Events", columns=rrb.TextLogColumns(text_log_columns=columns)
+    )
+
+
+def _states(name: str, *lanes: schema.Lane) -> rrb.StateTimelineView:
+    return rrb.StateTimelineView(contents=[lane.path for lane in lanes], name=name, time_view=_AXIS)
+
+
+def _plot(name: str, *paths: str, legend: bool = True) -> rrb.TimeSeriesView:
+    return rrb.TimeSeriesView(
+        contents=list(paths),
+        name=name,
+        axis_x=_AXIS,
+        plot_legend=rrb.PlotLegend(rrb.Corner2D.LeftTop, visible=legend),
+    )
+
+
+def _flight() -> rrb.Grid:
+    velocities = [
+        _plot(f"{title}, {reference.unit}", reference.path, executed.path, legend=title == _FIRST)
+        for title, reference, executed in zip(
+            (_FIRST, "Left velocity", "Up velocity", "Yaw rate"),
+            schema.REFERENCES,
+            schema.EXECUTED,
+            strict=True,
+        )
+    ]
+    delay = (schema.STATE_AGE, schema.ROUND_TRIP, schema.HANDLE_AGE, schema.SILENCE)
+    return rrb.Grid(
+        *velocities,
+        _plot("Position error, m", schema.ERROR.path),
+        _plot("Force on the hand, N", schema.HANDLE_FORCE.path),
+        _plot("Delay, s", *(quantity.path for quantity in delay)),
+        _plot("Clearance and way to the target, m", schema.CLEARANCE.path, schema.TARGET_DISTANCE.path),
+        grid_columns=2,
+        name="Flight",
+    )
+
+
+def _hand() -> rrb.Grid:
+    return rrb.Grid(
+        _plot("Handle's position, m", schema.HANDLE_POSITION.path),
+        _plot("Handle's velocity, m/s", schema.HANDLE_VELOCITY.path),
+        _plot("Force on the hand, N", schema.HANDLE_FORCE.path),
+        _plot("Force cue of equation (5), N", schema.FORCE_CUE.path),
+        _plot("p_h: where the hand wants the drone, m", schema.P_H.path),
+        _plot("Drone's position, m", schema.POSITION.path),
+        grid_columns=2,
+        name="Hand",
+    )
+
+
+def _machinery() -> rrb.Vertical:
+    plots = rrb.Grid(
+        _plot("Servo's lateness, s", schema.SERVO_LATE.path),
+        _plot("Servo's longest reads, writes, steps, s", schema.SERVO_TIME.path),
+        _plot("Frames lost, share", schema.LOSS.path),
+        _plot("Setpoint frames at the gate", schema.GATE.path),
+        _plot("Battery, share", schema.BATTERY.path),
+        _plot("Time between heartbeats, s", f"{schema.PROCESSES}/**"),
+        grid_columns=2,
+    )
+    states = _states("Device and setpoint stream", schema.DEVICE_STATE, schema.STREAM)
+    return rrb.Vertical(plots, states, row_shares=[4, 1], name="Machinery")

@@ -1,0 +1,132 @@
+"""What is logged when it happens or changes: states of lanes, events, commands and their answers."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from enum import IntEnum
+
+import numpy as np
+import rerun as rr
+
+from groundstation.messages import (
+    COMMAND,
+    COMMAND_ANSWER,
+    DEVICE_REPORT,
+    EVENT,
+    MISSION_PROGRESS,
+    PILOT_STATE,
+    VEHICLE_STATUS,
+    CommandKind,
+    DeviceReport,
+    FlightMode,
+    Phase,
+    PilotState,
+    Severity,
+    Stream,
+    VehicleStatus,
+)
+from groundstation.recording import schema
+from groundstation.recording.batch import Batch, text
+from groundstation.recording.item import Chunk, time_column
+
+# Rerun's names of levels, which its viewer colours.
+_INFO, _WARNING = "INFO", "WARN"
+_LEVELS: dict[int, str] = {Severity.INFO: _INFO, Severity.WARNING: _WARNING, Severity.ALARM: "ERROR"}
+
+Timed = tuple[float, str]
+
+
+class Changes:
+    """Turns records into rows where a state differs from the one before.
+
+    Args:
+        start: Monotonic time that is 0 on the timeline, s.
+    """
+
+    def __init__(self, start: float) -> None:
+        self._start = start
+        self._last: dict[str, str] = {}
+
+    def chunks(self, batch: Batch) -> Iterator[Chunk]:
+        """Yield a batch's changes of state, an entity each."""
+        pilot = batch.of(PILOT_STATE)
+        status = batch.of(VEHICLE_STATUS)
+        states: tuple[tuple[schema.Lane, Iterable[Timed]], ...] = (
+            (schema.PHASE, ((state.t, _phase(state)) for state in pilot)),
+            (schema.MODE, ((state.t, _word(FlightMode, state.mode)) for state in status)),
+            (schema.STREAM, ((state.t, _word(Stream, state.streaming)) for state in status)),
+            (schema.VEHICLE, ((state.t, _vehicle(state)) for state in status)),
+            (schema.DEVICE_STATE, ((report.t, _device(report)) for report in batch.of(DEVICE_REPORT))),
+            (schema.STAGE, ((state.t, text(state.stage)) for state in batch.of(MISSION_PROGRESS))),
+        )
+        for lane, timed in states:
+            if changed := self._changed(lane.path, timed):
+                words = [word for _, word in changed]
+                yield Chunk(lane.path, self._times(changed), rr.StateChange.columns(state=words))
+        reasons = self._changed(schema.REASON, ((state.t, text(state.reason)) for state in pilot))
+        if spoken := [(t, reason, _INFO) for t, reason in reasons if reason]:
+            yield self._texts(schema.REASON, spoken)
+
+    def texts(self, batch: Batch) -> Iterator[Chunk]:
+        """Yield a batch's events, an entity a source, and its commands with their answers."""
+        events: dict[str, list[tuple[float, str, str]]] = {}
+        for event in batch.of(EVENT):
+            level = _LEVELS.get(event.severity, _WARNING)
+            path = f"{schema.EVENTS}/{text(event.source)}"
+            events.setdefault(path, []).append((event.t, text(event.text), level))
+        for command in batch.of(COMMAND):
+            line = f"{_word(CommandKind, command.kind).capitalize()} asked for ({text(command.source)})"
+            events.setdefault(schema.COMMANDS, []).append((command.t, line, _INFO))
+        for answer in batch.of(COMMAND_ANSWER):
+            name = _word(CommandKind, answer.kind).capitalize()
+            words = text(answer.text)
+            line = f"{name} {'done' if answer.ok else 'refused'}{': ' if words else ''}{words}"
+            level = _INFO if answer.ok else _WARNING
+            events.setdefault(schema.COMMANDS, []).append((answer.t, line, level))
+        for path, lines in events.items():
+            yield self._texts(path, sorted(lines))
+
+    def _changed(self, path: str, timed: Iterable[Timed]) -> list[Timed]:
+        changed: list[Timed] = []
+        for t, word in timed:
+            if self._last.get(path) != word:
+                self._last[path] = word
+                changed.append((t, word))
+        return changed
+
+    def _times(self, timed: Iterable[tuple[float, object]]) -> rr.TimeColumn:
+        return time_column(np.array([t for t, _ in timed]) - self._start)
+
+    def _texts(self, path: str, lines: list[tuple[float, str, str]]) -> Chunk:
+        times, texts, levels = zip(*lines, strict=True)
+        columns = rr.TextLog.columns(text=list(texts), level=list(levels))
+        # Whole milliseconds read well in a table.
+        return Chunk(path, time_column(np.round(np.array(times) - self._start, 3)), columns)
+
+
+def _word(kind: type[IntEnum], number: int) -> str:
+    """Return the word of a number; one that means nothing here stays a number and ends no recording."""
+    try:
+        return kind(number).name.lower()
+    except ValueError:
+        return str(number)
+
+
+def _phase(state: PilotState) -> str:
+    if state.phase == Phase.ENGAGED and state.on_leash:
+        return "on leash"
+    return _word(Phase, state.phase)
+
+
+def _vehicle(status: VehicleStatus) -> str:
+    if not status.connected:
+        return "no link"
+    if not status.armed:
+        return "disarmed"
+    return "in air" if status.in_air else "armed"
+
+
+def _device(report: DeviceReport) -> str:
+    if not report.present:
+        return "absent"
+    return "ready" if report.homed else "not homed"

@@ -1,0 +1,212 @@
+"""Numbers of the records as Rerun columns: from records to one array a topic to one column a quantity."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import rerun as rr
+
+from groundstation.messages import (
+    HANDLE,
+    HEARTBEAT,
+    MISSION_PROGRESS,
+    PILOT_STATE,
+    SERVO_REPORT,
+    SETPOINT,
+    VEHICLE_STATE,
+    VEHICLE_STATUS,
+    Heartbeat,
+    Record,
+    Topic,
+)
+from groundstation.recording import schema
+from groundstation.recording.batch import Batch, text
+from groundstation.recording.item import Chunk, Numbers, time_column
+from groundstation.recording.schema import Quantity
+
+Rows = npt.NDArray[np.void]
+
+
+def rows_of(records: Sequence[Record]) -> Rows:
+    """Return records of one kind as one structured array, a row each, in one copy."""
+    kind: npt.DTypeLike = np.dtype(type(records[0]))
+    return np.frombuffer(b"".join(records), dtype=kind)
+
+
+def vehicle_rates(world: Numbers, yaw: Numbers) -> Numbers:
+    """Turn world velocities onto the vehicle's axes, v = J⁻¹(θ) ṗ of equation (3), row by row.
+
+    Args:
+        world: (n, 4), [x, y, z, yaw] rates, m/s and rad/s.
+        yaw: (n,), θ, rad.
+
+    Returns:
+        (n, 4), [forward, left, up, yaw rate].
+    """
+    cosine, sine = np.cos(yaw), np.sin(yaw)
+    x, y = world[:, 0], world[:, 1]
+    return np.column_stack((cosine * x + sine * y, cosine * y - sine * x, world[:, 2], world[:, 3]))
+
+
+def _where(known: npt.NDArray[np.bool_], values: Numbers) -> Numbers:
+    """Return values with NaN in the rows that are not known."""
+    return np.where(known if values.ndim == 1 else known[:, None], values, np.nan)
+
+
+def _with_yaw(field: str) -> Callable[[Rows], Numbers]:
+    return lambda rows: np.column_stack((rows[field], rows["yaw"]))
+
+
+def _fields(*names: str) -> Callable[[Rows], Numbers]:
+    if len(names) == 1:
+        return lambda rows: rows[names[0]].astype(np.float64)
+    return lambda rows: np.column_stack([rows[name] for name in names]).astype(np.float64)
+
+
+def _valid(field: str) -> Callable[[Rows], Numbers]:
+    return lambda rows: _where(rows["valid"] != 0, rows[field])
+
+
+def _reference(axis: int) -> Callable[[Rows], Numbers]:
+    return lambda rows: _where(rows["active"] != 0, rows["velocity"][:, axis])
+
+
+def _executed(axis: int) -> Callable[[Rows], Numbers]:
+    return lambda rows: _where(
+        rows["valid"] != 0, vehicle_rates(rows["velocity"], rows["position"][:, 3])[:, axis]
+    )
+
+
+_NUMBERS: tuple[tuple[Topic[Any], tuple[tuple[Quantity, Callable[[Rows], Numbers]], ...]], ...] = (
+    (
+        HANDLE,
+        (
+            (schema.HANDLE_POSITION, _with_yaw("position")),
+            (schema.HANDLE_VELOCITY, _fields("velocity")),
+            (schema.HANDLE_FORCE, _fields("force")),
+        ),
+    ),
+    (
+        SETPOINT,
+        (
+            *((quantity, _reference(axis)) for axis, quantity in enumerate(schema.REFERENCES)),
+            (schema.HANDLE_AGE, lambda rows: _where(rows["active"] != 0, rows["t"] - rows["handle_t"])),
+        ),
+    ),
+    (
+        PILOT_STATE,
+        (
+            (schema.P_H, _fields("p_h")),
+            (schema.P_H_RATE, _fields("p_h_rate")),
+            (schema.ERROR, _fields("error")),
+            (schema.V_REF, _fields("v_ref")),
+            (schema.FORCE_CUE, _fields("force")),
+            (schema.STATE_AGE, _fields("state_age")),
+        ),
+    ),
+    (
+        VEHICLE_STATE,
+        (
+            *((quantity, _executed(axis)) for axis, quantity in enumerate(schema.EXECUTED)),
+            (schema.POSITION, _valid("position")),
+            (schema.VELOCITY, _valid("velocity")),
+            (schema.ATTITUDE, _fields("roll", "pitch")),
+            (schema.BOOT_TIME, _fields("boot_t")),
+        ),
+    ),
+    (
+        VEHICLE_STATUS,
+        (
+            (schema.BATTERY, _fields("battery")),
+            (schema.VOLTAGE, _fields("voltage")),
+            (schema.HEALTH_BITS, _fields("health")),
+            (schema.ROUND_TRIP, _fields("rtt")),
+            (schema.SILENCE, lambda rows: _where(rows["heard_t"] > 0, rows["t"] - rows["heard_t"])),
+            (schema.LOSS, _fields("loss")),
+            (schema.GATE, _fields("sent", "dropped")),
+        ),
+    ),
+    (
+        SERVO_REPORT,
+        (
+            (schema.SERVO_RATE, _fields("rate")),
+            (schema.SERVO_LATE, _fields("late_p50", "late_p99", "late_max")),
+            (schema.SERVO_TIME, _fields("read", "write", "step")),
+            (schema.SERVO_TICKS, _fields("ticks", "missed")),
+        ),
+    ),
+    (
+        MISSION_PROGRESS,
+        (
+            (schema.TARGET_DISTANCE, _fields("target_distance")),
+            (schema.CLEARANCE, _fields("clearance")),
+            (schema.LEGS, _fields("leg", "legs")),
+            (schema.COLLISIONS, _fields("collisions")),
+        ),
+    ),
+)
+
+
+def number_chunks(batch: Batch, start: float) -> Iterator[Chunk]:
+    """Yield the numbers of a batch, an entity each.
+
+    Args:
+        batch: What came.
+        start: Monotonic time that is 0 on the timeline, s.
+    """
+    for topic, quantities in _NUMBERS:
+        records = batch.of(topic)
+        if not records:
+            continue
+        rows = rows_of(records)
+        times = time_column(rows["t"] - start)
+        for quantity, values in quantities:
+            yield Chunk(quantity.path, times, rr.Scalars.columns(scalars=_finite_or_nan(values(rows))))
+
+
+def _finite_or_nan(values: Numbers) -> Numbers:
+    """Plots scale to what they are given: an infinite clearance, as in free flight, is no number to show."""
+    return np.where(np.isfinite(values), values, np.nan)
+
+
+class Heartbeats:
+    """Time between heartbeats, process by process."""
+
+    def __init__(self) -> None:
+        self._last: dict[str, float] = {}
+
+    def chunks(self, batch: Batch, start: float) -> Iterator[Chunk]:
+        """Yield a batch's heartbeats, an entity a process; each process's first only starts the count."""
+        beats: dict[str, list[Heartbeat]] = {}
+        for beat in batch.of(HEARTBEAT):
+            beats.setdefault(text(beat.role), []).append(beat)
+        for role, heard in beats.items():
+            times = np.array([self._last.get(role, heard[0].t), *(beat.t for beat in heard)])
+            self._last[role] = heard[-1].t
+            yield Chunk(
+                schema.heartbeat(role).path,
+                time_column(times[1:] - start),
+                rr.Scalars.columns(scalars=np.diff(times)),
+            )
+
+
+class Buttons:
+    """The handle's buttons, a row only when one is pressed or let go."""
+
+    def __init__(self) -> None:
+        self._last = -1.0
+
+    def chunks(self, batch: Batch, start: float) -> Iterator[Chunk]:
+        """Yield a batch's changes."""
+        if not (handles := batch.of(HANDLE)):
+            return
+        rows = rows_of(handles)
+        buttons = rows["buttons"].astype(np.float64)
+        changed = np.diff(buttons, prepend=self._last) != 0
+        self._last = buttons[-1]
+        if changed.any():
+            times = time_column(rows["t"][changed] - start)
+            yield Chunk(schema.HANDLE_BUTTONS.path, times, rr.Scalars.columns(scalars=buttons[changed]))

@@ -1,0 +1,145 @@
+"""What moves in the scene: the vehicle, the hand's p_h, the leash between them, and the force on the hand."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+import numpy.typing as npt
+import rerun as rr
+
+from groundstation.messages import HANDLE, PILOT_STATE, VEHICLE_STATE, Phase
+from groundstation.recording import schema
+from groundstation.recording.batch import Batch
+from groundstation.recording.columns import Rows, rows_of
+from groundstation.recording.item import Chunk, Numbers, time_column
+
+# States in a strip: short enough to grow smoothly, long enough to keep a long flight's trail cheap.
+_STRIP = 5
+_STILL_M = 0.01
+
+
+class Trail:
+    """A way flown as short strips, so that the viewer shows as much of it as has been flown.
+
+    Args:
+        path: Entity.
+    """
+
+    def __init__(self, path: str) -> None:
+        self._path = path
+        self._points: list[Numbers] = []
+
+    def lift(self) -> None:
+        """End the line here; the next point starts a new one."""
+        self._points.clear()
+
+    def add(self, times: Numbers, points: Numbers) -> Iterator[Chunk]:
+        """Yield the strips that a batch completes; points that hardly differ from the one before add nothing.
+
+        Args:
+            times: (n,), s on the timeline.
+            points: (n, 3), world, m.
+        """
+        ends: list[float] = []
+        strips: list[Numbers] = []
+        for t, point in zip(times, points, strict=True):
+            if self._points and np.max(np.abs(point - self._points[-1])) < _STILL_M:
+                continue
+            self._points.append(point)
+            if len(self._points) > _STRIP:
+                ends.append(t)
+                strips.append(np.array(self._points))
+                del self._points[:-1]
+        if strips:
+            yield Chunk(self._path, time_column(np.array(ends)), rr.LineStrips3D.columns(strips=strips))
+
+
+class Motion:
+    """Turns vehicle and pilot records into moving geometry.
+
+    Args:
+        start: Monotonic time that is 0 on the timeline, s.
+        heading: The handle's axes turn with the vehicle (`mapping.frame`), so the force on it does too.
+    """
+
+    def __init__(self, start: float, *, heading: bool) -> None:
+        self._start = start
+        self._heading = heading
+        self._vehicle_trail = Trail(schema.VEHICLE_TRAIL)
+        self._hand_trail = Trail(schema.HAND_TRAIL)
+        self._force = np.zeros((1, 3))
+        self._force_t = np.zeros(1)
+
+    def chunks(self, batch: Batch) -> Iterator[Chunk]:
+        """Yield a batch's motion."""
+        if states := [state for state in batch.of(VEHICLE_STATE) if state.valid]:
+            yield from self._vehicle(rows_of(states))
+        if handles := batch.of(HANDLE):
+            rows = rows_of(handles)
+            self._force_t = np.concatenate((self._force_t[-1:], rows["t"]))
+            self._force = np.concatenate((self._force[-1:], rows["force"]))
+        if pilot := batch.of(PILOT_STATE):
+            yield from self._hand(rows_of(pilot))
+
+    def _vehicle(self, rows: Rows) -> Iterator[Chunk]:
+        times, position = rows["t"] - self._start, rows["position"]
+        pose = rr.Transform3D.columns(
+            translation=position[:, :3], quaternion=quaternions(rows["roll"], rows["pitch"], position[:, 3])
+        )
+        yield Chunk(schema.VEHICLE_POSE, time_column(times), pose)
+        ground = position[:, :3] * (1.0, 1.0, 0.0)
+        plumbs = list(np.stack((position[:, :3], ground), axis=1))
+        yield Chunk(schema.PLUMB, time_column(times), rr.LineStrips3D.columns(strips=plumbs))
+        yield from self._vehicle_trail.add(times, position[:, :3])
+
+    def _hand(self, rows: Rows) -> Iterator[Chunk]:
+        """Yield p_h, leash and force; in rows that are not engaged they are empty, which clears them."""
+        engaged = rows["phase"] == Phase.ENGAGED
+        times = rows["t"] - self._start
+        column = time_column(times)
+        lengths = engaged.astype(np.int32)
+        shown = rows[engaged]
+        hand, seen = shown["p_h"][:, :3], (shown["p_h"] - shown["error"])[:, :3]
+        force = self._world_force(shown) * schema.ARROW_M_PER_N
+        leashes = list(np.stack((seen, hand), axis=1))
+        yield Chunk(schema.HAND, column, rr.Points3D.columns(positions=hand).partition(lengths))
+        yield Chunk(schema.LEASH, column, rr.LineStrips3D.columns(strips=leashes).partition(lengths))
+        arrows = rr.Arrows3D.columns(origins=seen, vectors=force).partition(lengths)
+        yield Chunk(schema.FORCE_ARROW, column, arrows)
+        if not engaged.all():
+            self._hand_trail.lift()
+        if len(shown):
+            yield from self._hand_trail.add(times[engaged], hand)
+
+    def _world_force(self, rows: Rows) -> Numbers:
+        """Return the force last rendered on the hand at each row, (n, 3), world, N."""
+        newest = np.searchsorted(self._force_t, rows["t"], side="right") - 1
+        force = self._force[np.maximum(newest, 0)]
+        turn = (rows["p_h"] - rows["error"])[:, 3] if self._heading else np.zeros(len(rows))
+        cosine, sine = np.cos(turn), np.sin(turn)
+        x, y = force[:, 0], force[:, 1]
+        return np.column_stack((cosine * x - sine * y, sine * x + cosine * y, force[:, 2]))
+
+
+def quaternions(roll: Numbers, pitch: Numbers, yaw: Numbers) -> npt.NDArray[np.float64]:
+    """Return attitudes R = R_z(yaw) R_y(pitch) R_x(roll) as quaternions [x, y, z, w].
+
+    Args:
+        roll: (n,), about the vehicle's x (forward), rad.
+        pitch: (n,), about y (left), rad.
+        yaw: (n,), about z, counter-clockwise from east, rad.
+    """
+    (cr, sr), (cp, sp), (cy, sy) = (_halves(angle) for angle in (roll, pitch, yaw))
+    return np.column_stack(
+        (
+            sr * cp * cy - cr * sp * sy,
+            cr * sp * cy + sr * cp * sy,
+            cr * cp * sy - sr * sp * cy,
+            cr * cp * cy + sr * sp * sy,
+        )
+    )
+
+
+def _halves(angle: Numbers) -> Sequence[Numbers]:
+    return np.cos(angle / 2), np.sin(angle / 2)

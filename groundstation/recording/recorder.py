@@ -1,0 +1,63 @@
+"""The recorder process: all that crosses the bus into a Rerun file, and to a live viewer if there is one."""
+
+from __future__ import annotations
+
+import datetime
+import os
+import sys
+import time
+import traceback
+
+from groundstation.bus import Bus
+from groundstation.child import Lifeline, run_child
+from groundstation.clock import Every, Pacer
+from groundstation.messages import Severity
+from groundstation.recording.batch import Taps
+from groundstation.run import Run
+
+ROLE = "recorder"
+_TURN_S = 0.05
+# Rows cost per call, not per row: large batches for the file, small ones where somebody watches.
+_BATCH_S = 0.5
+_LIVE_BATCH_S = 0.1
+_NICENESS = 10
+_NICENESS = 10
+
+
+def record(run: Run, bus: Bus, lifeline: Lifeline) -> None:
+    """Record until the lifeline no longer holds."""
+    taps = Taps(bus)
+    # Rerun takes its second to import; the taps hold what comes meanwhile. The heart begins to beat after it.
+    from groundstation.recording.session import Session, start_of
+
+    start = start_of(run.started, datetime.datetime.now().astimezone(), time.monotonic())
+    session = Session(run, start, bus.event)
+    batch = Every(_LIVE_BATCH_S if run.viewer_url else _BATCH_S)
+    pacer = Pacer(_TURN_S)
+    while lifeline.holds():
+        if taps.drain():
+            bus.event(Severity.WARNING, "The recorder was held up for seconds; handle samples are missing.")
+        if batch.due(time.monotonic()):
+            session.take(taps.take())
+        pacer.wait()
+    taps.drain()
+    session.take(taps.take())
+    session.close()
+
+
+def main() -> None:
+    """Run the process, behind all others: no control deadline shall wait because of it."""
+    os.nice(_NICENESS)
+    code = 0
+    try:
+        run_child(ROLE, record)
+    except Exception:  # noqa: BLE001 - the end of the process; the supervisor shows its last words
+        traceback.print_exc()
+        code = 1
+    sys.stderr.flush()
+    # At a normal end Rerun waits without limit for a live viewer that does not read; all is written by now.
+    os._exit(code)
+
+
+if __name__ == "__main__":
+    main()

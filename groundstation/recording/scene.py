@@ -1,0 +1,127 @@
+"""What stands still in the scene: ground, obstacles, route and target; and how what moves looks."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+import rerun as rr
+
+from groundstation.recording import palette, schema
+from groundstation.recording.airframe import quadrotor
+from groundstation.recording.item import Numbers, Still
+from groundstation.training.mission import Mission
+from sim.scenario import Box, Cylinder, Obstacle
+
+_MARGIN_M = 4.0
+# The Chase view fits this around the vehicle.
+_CHASE_M = 0.6
+_GROUND: palette.Colour = (43, 48, 56)
+_OBSTACLE: palette.Colour = (158, 134, 118)
+_SOLID = rr.components.FillMode.Solid
+
+
+def static_scene(mission: Mission | None) -> Iterator[Still]:
+    """Yield what is logged once, entity by entity.
+
+    Args:
+        mission: Whose obstacles, route and target are shown; None shows the ground alone.
+    """
+    yield Still(schema.WORLD, rr.ViewCoordinates.RIGHT_HAND_Z_UP)
+    yield Still(schema.GROUND, _ground(mission))
+    yield Still(
+        schema.PAD, rr.Cylinders3D(lengths=[0.02], radii=[0.5], colors=[palette.BLUE], fill_mode=_SOLID)
+    )
+    for obstacle in mission.obstacle if mission else ():
+        yield Still(f"{schema.OBSTACLES}/{obstacle.name.replace(' ', '_')}", _obstacle(obstacle))
+    if mission and mission.route:
+        yield Still(schema.ROUTE, _route(mission))
+    if mission and mission.target:
+        position, radius = mission.target.position, mission.target.radius
+        yield Still(
+            schema.TARGET,
+            rr.Ellipsoids3D(
+                centers=[position],
+                radii=[radius],
+                colors=[palette.GREEN],
+                line_radii=[-1.0],
+                fill_mode=rr.components.FillMode.TransparentFillMajorWireframe,
+                labels=["target"],
+            ),
+        )
+    yield Still(schema.AIRFRAME, quadrotor())
+    yield Still(
+        schema.CHASED,
+        rr.Points3D([(-_CHASE_M, -_CHASE_M, -_CHASE_M), (_CHASE_M, _CHASE_M, _CHASE_M)], radii=[0.0]),
+    )
+    yield from _looks()
+
+
+def _looks() -> Iterator[Still]:
+    """Yield colour and thickness of what moves; negative radii are in the screen's points, not metres."""
+    yield Still(schema.VEHICLE_TRAIL, rr.LineStrips3D.from_fields(colors=[palette.VEHICLE], radii=[-1.5]))
+    yield Still(schema.HAND_TRAIL, rr.LineStrips3D.from_fields(colors=[palette.HAND], radii=[-0.75]))
+    yield Still(schema.PLUMB, rr.LineStrips3D.from_fields(colors=[palette.LIGHT], radii=[-0.5]))
+    yield Still(schema.HAND, rr.Points3D.from_fields(colors=[palette.HAND], radii=[0.07]))
+    yield Still(schema.LEASH, rr.LineStrips3D.from_fields(colors=[palette.HAND], radii=[-1.0]))
+    yield Still(schema.FORCE_ARROW, rr.Arrows3D.from_fields(colors=[palette.FORCE], radii=[0.04]))
+
+
+def extent(mission: Mission | None) -> tuple[Numbers, Numbers]:
+    """Return the lower and upper corner of what a mission is about, world, m."""
+    points: list[Sequence[float]] = [(0.0, 0.0, 0.0)]
+    if mission:
+        points += [obstacle.center for obstacle in mission.obstacle]
+        points += mission.route
+        points += [mission.target.position] if mission.target else []
+    return np.min(points, axis=0), np.max(points, axis=0)
+
+
+def _ground(mission: Mission | None) -> rr.Mesh3D:
+    low, high = extent(mission)
+    (x0, y0), (x1, y1) = low[:2] - _MARGIN_M, high[:2] + _MARGIN_M
+    corners = [(x0, y0, -0.01), (x1, y0, -0.01), (x1, y1, -0.01), (x0, y1, -0.01)]
+    return rr.Mesh3D(
+        vertex_positions=corners,
+        triangle_indices=[(0, 1, 2), (0, 2, 3)],
+        vertex_normals=[(0, 0, 1)] * 4,
+        vertex_colors=[_GROUND] * 4,
+    )
+
+
+def _route(mission: Mission) -> rr.LineStrips3D:
+    start = (0.0, 0.0, mission.takeoff_altitude_m)
+    end = (mission.target.position,) if mission.target else ()
+    return rr.LineStrips3D([[start, *mission.route, *end]], colors=[palette.GREEN], radii=[-0.75])
+
+
+def _obstacle(obstacle: Obstacle) -> rr.AsComponents:
+    if isinstance(obstacle, Box):
+        return rr.Boxes3D(
+            centers=[obstacle.center],
+            sizes=[obstacle.size],
+            rotation_axis_angles=[rr.RotationAxisAngle((0, 0, 1), radians=math.radians(obstacle.yaw_deg))],
+            colors=[_OBSTACLE],
+            fill_mode=_SOLID,
+            labels=[obstacle.name],
+            show_labels=False,
+        )
+    if isinstance(obstacle, Cylinder):
+        return rr.Cylinders3D(
+            centers=[obstacle.center],
+            lengths=[obstacle.height],
+            radii=[obstacle.radius],
+            colors=[_OBSTACLE],
+            fill_mode=_SOLID,
+            labels=[obstacle.name],
+            show_labels=False,
+        )
+    return rr.Ellipsoids3D(
+        centers=[obstacle.center],
+        radii=[obstacle.radius],
+        colors=[_OBSTACLE],
+        fill_mode=_SOLID,
+        labels=[obstacle.name],
+        show_labels=False,
+    )

@@ -1,0 +1,129 @@
+"""One flight being recorded: batches of records in, a file and perhaps a live view out."""
+
+from __future__ import annotations
+
+import datetime
+from collections.abc import Callable, Iterator
+
+from groundstation.messages import DEVICE_REPORT, Severity
+from groundstation.recording.about import about_device, about_flight
+from groundstation.recording.batch import Batch
+from groundstation.recording.blueprint import blueprint
+from groundstation.recording.changes import Changes
+from groundstation.recording.columns import Buttons, Heartbeats, number_chunks
+from groundstation.recording.feed import LiveFeed
+from groundstation.recording.file import FlightFile, RecordingError
+from groundstation.recording.item import Item
+from groundstation.recording.motion import Motion
+from groundstation.recording.scene import static_scene
+from groundstation.recording.style import static_styles
+from groundstation.run import Run
+
+Tell = Callable[[Severity, str], None]
+
+_LONGEST_START_S = 60.0
+
+
+def start_of(started: str, wall: datetime.datetime, monotonic: float) -> float:
+    """Return when a run was started on the monotonic clock, s.
+
+    Args:
+        started: Wall-clock time of the start, ISO 8601.
+        wall: Wall-clock time now.
+        monotonic: Monotonic time now, s; also the answer where the wall clock was put right in between.
+    """
+    age = (wall - datetime.datetime.fromisoformat(started)).total_seconds()
+    return monotonic - age if 0.0 <= age <= _LONGEST_START_S else monotonic
+
+
+class Translator:
+    """Turns batches of records into items; holds what reaches from one batch into the next.
+
+    Args:
+        run: The run.
+        start: Monotonic time that is 0 on the timeline, s.
+    """
+
+    def __init__(self, run: Run, start: float) -> None:
+        self._run = run
+        self._start = start
+        self._changes = Changes(start)
+        self._heartbeats = Heartbeats()
+        self._buttons = Buttons()
+        self._motion = Motion(start, heading=run.settings.mapping.frame == "heading")
+        self._device = b""
+
+    def opening(self) -> Iterator[Item]:
+        """Yield what is logged before all else."""
+        yield from about_flight(self._run)
+        yield from static_styles()
+        yield from static_scene(self._run.mission)
+
+    def items(self, batch: Batch) -> Iterator[Item]:
+        """Yield a batch's items."""
+        yield from number_chunks(batch, self._start)
+        yield from self._heartbeats.chunks(batch, self._start)
+        yield from self._buttons.chunks(batch, self._start)
+        yield from self._changes.chunks(batch)
+        yield from self._changes.texts(batch)
+        yield from self._motion.chunks(batch)
+        for report in batch.of(DEVICE_REPORT):
+            if report.present and (known := report.name + report.serial) != self._device:
+                self._device = known
+                yield from about_device(self._run, report)
+
+
+class Session:
+    """Where the items go.
+
+    Args:
+        run: The run.
+        start: Monotonic time that is 0 on the timeline, s.
+        tell: Makes an event of what people must know.
+    """
+
+    def __init__(self, run: Run, start: float, tell: Tell) -> None:
+        self._translator = Translator(run, start)
+        self._tell = tell
+        layout = blueprint(run.mission)
+        self._file: FlightFile | None = None
+        try:
+            self._file = FlightFile(run.recording, run.run_id, layout)
+        except RecordingError as error:
+            tell(Severity.ALARM, str(error))
+        self._feed = LiveFeed(run.viewer_url, run.run_id, layout) if run.viewer_url else None
+        self._slow_viewer = False
+        self._spread(list(self._translator.opening()))
+
+    def take(self, batch: Batch) -> None:
+        """Record a batch."""
+        if self._file or self._feed:
+            self._spread(list(self._translator.items(batch)))
+
+    def close(self) -> None:
+        """End the file and the live view."""
+        if self._feed:
+            self._feed.close()
+        if self._file is None:
+            return
+        try:
+            if not self._file.close():
+                self._tell(
+                    Severity.INFO,
+                    f"{self._file.path} is complete; making it smaller took too long and was left out.",
+                )
+        except RecordingError as error:
+            self._tell(Severity.ALARM, str(error))
+
+    def _spread(self, items: list[Item]) -> None:
+        if self._file:
+            try:
+                self._file.write(items)
+            except RecordingError as error:
+                self._tell(Severity.ALARM, str(error))
+                self._file = None
+        if self._feed and not self._feed.offer(items) and not self._slow_viewer:
+            self._slow_viewer = True
+            self._tell(
+                Severity.WARNING, "The live viewer does not keep up and misses data; the recording does not."
+            )

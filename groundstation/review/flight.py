@@ -1,0 +1,140 @@
+"""A recorded flight as NumPy arrays, by the entities of `groundstation.recording.schema`."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import msgspec
+import numpy as np
+import numpy.typing as npt
+from rerun.chunk import Chunk
+
+from groundstation.config import Settings
+from groundstation.recording import schema
+from groundstation.recording.schema import Lane, Quantity
+from groundstation.review.rrd import read_chunks
+from groundstation.training.mission import Mission
+
+Numbers = npt.NDArray[np.float64]
+
+_SCALARS = "Scalars:scalars"
+_STATE = "StateChange:state"
+_TEXT, _LEVEL = "TextLog:text", "TextLog:level"
+_PROPERTIES = "/__properties"
+
+
+class Series(NamedTuple):
+    """Numbers over time.
+
+    Attributes:
+        t: (n,), s since the run was started, ascending.
+        values: (n, k), a column a part of the quantity, in its units.
+    """
+
+    t: Numbers
+    values: Numbers
+
+
+class Line(NamedTuple):
+    """An event: when (s), its level, who told it, and its words."""
+
+    t: float
+    level: str
+    source: str
+    text: str
+
+
+class Flight:
+    """One recording, read whole into memory, however it ended.
+
+    Args:
+        path: The `.rrd` file.
+
+    Raises:
+        InputError: It is missing or not a recording.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self._timed: dict[str, list[Chunk]] = {}
+        self._static: dict[str, list[Chunk]] = {}
+        for chunk in read_chunks(path):
+            kind = self._static if chunk.is_static else self._timed
+            kind.setdefault(chunk.entity_path, []).append(chunk)
+
+    @property
+    def entities(self) -> tuple[str, ...]:
+        """Return the paths of all that has rows over time, sorted."""
+        return tuple(sorted(self._timed))
+
+    def series(self, quantity: Quantity) -> Series:
+        """Return a quantity's rows; none where it was never recorded."""
+        width = len(quantity.parts)
+        times: list[Numbers] = [np.empty(0)]
+        values: list[Numbers] = [np.empty((0, width))]
+        for chunk in self._timed.get(quantity.path, ()):
+            times.append(_seconds(chunk))
+            values.append(chunk.to_record_batch().column(_SCALARS).flatten().to_numpy().reshape(-1, width))
+        t, numbers = np.concatenate(times), np.concatenate(values)
+        order = np.argsort(t, kind="stable")
+        return Series(t[order], numbers[order])
+
+    def states(self, lane: Lane) -> list[tuple[float, str]]:
+        """Return a lane's changes: when (s), and to what."""
+        return sorted((t, words[_STATE]) for t, words in self._words(lane.path, _STATE))
+
+    def events(self) -> list[Line]:
+        """Return all events, commands and answers, in the order of their times."""
+        paths = [path for path in self._timed if path.startswith(f"{schema.EVENTS}/")]
+        lines = [
+            Line(t, words[_LEVEL], path.rpartition("/")[2], words[_TEXT])
+            for path in paths
+            for t, words in self._words(path, _TEXT, _LEVEL)
+        ]
+        return sorted(lines)
+
+    def properties(self, name: str = schema.FLIGHT) -> dict[str, Any]:
+        """Return the recorder's properties of the flight, or those of the device."""
+        return properties_of(self._static.get(f"{_PROPERTIES}/{name}", []))
+
+    @property
+    def mission(self) -> Mission | None:
+        """The mission flown, or None."""
+        return msgspec.json.decode(self.properties()["mission_json"], type=Mission | None)
+
+    @property
+    def settings(self) -> Settings:
+        """The settings flown with."""
+        return msgspec.json.decode(self.properties()["settings_json"], type=Settings)
+
+    @property
+    def duration(self) -> float:
+        """From the start of the run to the last row of all, s; 0 of an empty recording."""
+        ends = [_seconds(chunk) for chunks in self._timed.values() for chunk in chunks]
+        return max((float(times.max()) for times in ends if len(times)), default=0.0)
+
+    def _words(self, path: str, *components: str) -> Iterator[tuple[float, dict[str, str]]]:
+        for chunk in self._timed.get(path, ()):
+            rows = chunk.to_record_batch()
+            columns = [rows.column(component).to_pylist() for component in components]
+            for t, *row in zip(_seconds(chunk), *columns, strict=True):
+                yield float(t), {component: cell[0] for component, cell in zip(components, row, strict=True)}
+
+
+def properties_of(chunks: list[Chunk]) -> dict[str, Any]:
+    """Return the properties in static chunks of one property entity, the newest of each."""
+    found: dict[str, Any] = {}
+    for chunk in chunks:
+        rows = chunk.to_record_batch()
+        for name in rows.schema.names:
+            cell = rows.column(name)[-1].as_py()
+            if isinstance(cell, list) and cell:
+                found[name] = cell[0]
+    return found
+
+
+def _seconds(chunk: Chunk) -> Numbers:
+    """Return the times of a chunk's rows, s, on the timeline."""
+    return chunk.to_record_batch().column(schema.TIMELINE).cast("int64").to_numpy() * 1e-9

@@ -1,0 +1,63 @@
+"""The flights in a folder."""
+
+from __future__ import annotations
+
+import datetime
+from dataclasses import dataclass
+from pathlib import Path
+
+from groundstation.errors import InputError
+from groundstation.recording import schema
+
+
+@dataclass(frozen=True, slots=True)
+class Entry:
+    """A recorded flight.
+
+    Attributes:
+        path: The recording.
+        started: When the flight was started, or, of a recording that did not end properly, last written.
+        size: Bytes.
+        mission: The mission's name; "" for none or not known.
+        duration: s; None where only reading the whole file would tell.
+        whole: It ended properly.
+    """
+
+    path: Path
+    started: datetime.datetime
+    size: int
+    mission: str
+    duration: float | None
+    whole: bool
+
+
+def list_flights(folder: Path) -> list[Entry]:
+    """Return the flights in a folder, newest first. Files that are no recordings are passed over.
+
+    Args:
+        folder: Where to look; one that is not there has no flights.
+    """
+    paths = [path for path in folder.glob("*.rrd") if not path.name.startswith(".") and path.is_file()]
+    entries = [entry for path in paths if (entry := _entry(path))]
+    return sorted(entries, key=lambda entry: entry.started, reverse=True)
+
+
+def _entry(path: Path) -> Entry | None:
+    from groundstation.review.flight import properties_of
+    from groundstation.review.rrd import is_whole, open_reader
+
+    try:
+        reader = open_reader(path)
+        status = path.stat()
+    except (InputError, OSError):
+        return None
+    written = datetime.datetime.fromtimestamp(status.st_mtime).astimezone()
+    if not is_whole(reader):
+        return Entry(path, written, status.st_size, "", None, whole=False)
+    store = reader.store()
+    flight = properties_of(store.stream().filter(content=f"/__properties/{schema.FLIGHT}").to_chunks())
+    beats = store.stream().filter(content=schema.heartbeat("recorder").path, is_static=False).to_chunks()
+    ends = [chunk.to_record_batch().column(schema.TIMELINE).cast("int64").to_pylist() for chunk in beats]
+    duration = max((end * 1e-9 for times in ends for end in times), default=None)
+    started = datetime.datetime.fromisoformat(flight["started"]) if "started" in flight else written
+    return Entry(path, started, status.st_size, str(flight.get("mission", "")), duration, whole=True)

@@ -1,0 +1,273 @@
+"""From records to rows: every number arrives, where it belongs, and what is not known is NaN."""
+
+from __future__ import annotations
+
+import datetime
+import itertools
+import math
+
+import numpy as np
+import numpy.testing as npt
+import pytest
+import rerun as rr
+from hypothesis import given
+from hypothesis import strategies as st
+from recording_support import a_handle, a_pilot_state, a_setpoint, a_status, a_vehicle_state
+
+from groundstation.messages import (
+    HANDLE,
+    HEARTBEAT,
+    MISSION_PROGRESS,
+    PILOT_STATE,
+    SERVO_REPORT,
+    SETPOINT,
+    VEHICLE_STATE,
+    VEHICLE_STATUS,
+    Heartbeat,
+    MissionProgress,
+    Phase,
+    Record,
+    ServoReport,
+    Topic,
+)
+from groundstation.pilot.controller import vehicle_rates as control_law
+from groundstation.recording import schema
+from groundstation.recording.batch import Batch
+from groundstation.recording.columns import Buttons, Heartbeats, number_chunks, vehicle_rates
+from groundstation.recording.item import Chunk
+from groundstation.recording.motion import Motion, Trail, quaternions
+from groundstation.recording.session import start_of
+
+START = 1_000.0
+ANGLES = st.floats(-math.pi, math.pi)
+SPEEDS = st.floats(-10, 10)
+
+
+def batch_of(*pairs: tuple[Topic[Record], list[Record]]) -> Batch:
+    batch = Batch()
+    for topic, records in pairs:
+        batch.add(topic, records)
+    return batch
+
+
+def numbers(chunk: Chunk) -> np.ndarray:
+    return next(iter(chunk.columns)).as_arrow_array().flatten().to_numpy().reshape(len(chunk.times.times), -1)
+
+
+def seconds(chunk: Chunk) -> np.ndarray:
+    return chunk.times.times.cast("int64").to_numpy() * 1e-9
+
+
+def by_path(chunks) -> dict[str, Chunk]:
+    found: dict[str, Chunk] = {}
+    for chunk in chunks:
+        assert chunk.path not in found
+        found[chunk.path] = chunk
+    return found
+
+
+def full_batch() -> Batch:
+    t = START + 1.5
+    progress = MissionProgress(t=t, leg=1, legs=4, target_distance=3.5, clearance=math.inf, collisions=2)
+    servo = ServoReport(t=t, rate=999.0, late_p50=1e-5, late_p99=2e-5, late_max=3e-5, read=4e-5, write=5e-5)
+    return batch_of(
+        (HANDLE, [a_handle(t, 7)]),
+        (SETPOINT, [a_setpoint(t)]),
+        (PILOT_STATE, [a_pilot_state(t)]),
+        (VEHICLE_STATE, [a_vehicle_state(t)]),
+        (VEHICLE_STATUS, [a_status(t)]),
+        (SERVO_REPORT, [servo]),
+        (MISSION_PROGRESS, [progress]),
+    )
+
+
+def test_a_batch_of_everything_fills_every_quantity_of_the_schema():
+    batch = full_batch()
+    chunks = by_path([*number_chunks(batch, START), *Buttons().chunks(batch, START)])
+    assert set(chunks) == {quantity.path for quantity in schema.QUANTITIES}
+    for quantity in schema.QUANTITIES:
+        assert numbers(chunks[quantity.path]).shape == (1, len(quantity.parts)), quantity.path
+        npt.assert_allclose(seconds(chunks[quantity.path]), [1.5])
+
+
+def test_an_empty_batch_has_no_rows():
+    assert list(number_chunks(Batch(), START)) == []
+
+
+def test_numbers_stand_where_the_schema_says():
+    chunks = by_path(number_chunks(full_batch(), START))
+    expected = {
+        schema.HANDLE_POSITION: [7e-6, -7e-6, 0.01, 7e-4],
+        schema.HANDLE_FORCE: [7e-3, 2.0, -3.0],
+        schema.ERROR: [0.5, 1.0, 0.5, 0.1],
+        schema.HANDLE_AGE: [0.004],
+        schema.POSITION: [1.0, 2.0, 3.0, 0.4],
+        schema.ATTITUDE: [0.1, -0.2],
+        schema.SILENCE: [0.03],
+        schema.ROUND_TRIP: [math.nan],
+        schema.GATE: [10, 2],
+        schema.SERVO_LATE: [1e-5, 2e-5, 3e-5],
+        schema.LEGS: [1, 4],
+        schema.CLEARANCE: [math.nan],
+        schema.COLLISIONS: [2],
+    }
+    for quantity, row in expected.items():
+        npt.assert_allclose(numbers(chunks[quantity.path])[0], row, atol=1e-9, err_msg=quantity.path)
+
+
+def test_executed_velocity_is_on_the_axes_of_the_reference():
+    state = a_vehicle_state(START)
+    chunks = by_path(number_chunks(batch_of((VEHICLE_STATE, [state])), START))
+    executed = [numbers(chunks[quantity.path])[0, 0] for quantity in schema.EXECUTED]
+    npt.assert_allclose(executed, control_law(tuple(state.velocity), state.position[3]))
+
+
+@given(st.lists(st.tuples(SPEEDS, SPEEDS, SPEEDS, SPEEDS, ANGLES), min_size=1, max_size=8))
+def test_turning_many_rows_is_the_control_laws_turn_of_each(rows):
+    table = np.array(rows)
+    turned = vehicle_rates(table[:, :4], table[:, 4])
+    npt.assert_allclose(turned, [control_law(tuple(row[:4]), row[4]) for row in rows], atol=1e-12)
+
+
+def test_what_the_vehicle_calls_invalid_is_not_known():
+    states = [a_vehicle_state(START), a_vehicle_state(START + 0.02, valid=False)]
+    chunks = by_path(number_chunks(batch_of((VEHICLE_STATE, states)), START))
+    for quantity in (*schema.EXECUTED, schema.POSITION, schema.VELOCITY):
+        first, second = numbers(chunks[quantity.path])
+        assert np.isfinite(first).all()
+        assert np.isnan(second).all()
+
+
+def test_without_an_active_setpoint_there_is_no_reference():
+    setpoints = [a_setpoint(START), a_setpoint(START + 0.02, active=False)]
+    chunks = by_path(number_chunks(batch_of((SETPOINT, setpoints)), START))
+    for quantity, value in zip(schema.REFERENCES, (1.0, 2.0, 3.0, 4.0), strict=True):
+        npt.assert_array_equal(numbers(chunks[quantity.path])[:, 0], [value, np.nan])
+    npt.assert_allclose(numbers(chunks[schema.HANDLE_AGE.path])[:, 0], [0.004, np.nan])
+
+
+def test_heartbeats_are_counted_across_batches_by_process():
+    def beats(*times: float) -> Batch:
+        return batch_of((HEARTBEAT, [Heartbeat(t=START + t, role=b"pilot", pid=1) for t in times]))
+
+    counted = Heartbeats()
+    first = by_path(counted.chunks(beats(0.0, 0.1), START))["/processes/pilot"]
+    second = by_path(counted.chunks(beats(0.5), START))["/processes/pilot"]
+    npt.assert_allclose(numbers(first)[:, 0], [0.0, 0.1], atol=1e-9)
+    npt.assert_allclose(numbers(second)[:, 0], [0.4], atol=1e-9)
+
+
+def test_buttons_are_logged_when_pressed_or_let_go():
+    def held(t: float, *buttons: int) -> Batch:
+        handles = [a_handle(START + t + i, i) for i in range(len(buttons))]
+        for handle, bits in zip(handles, buttons, strict=True):
+            handle.buttons = bits
+        return batch_of((HANDLE, handles))
+
+    buttons = Buttons()
+    (first,) = buttons.chunks(held(0.0, 0, 0, 5, 5), START)
+    npt.assert_allclose(seconds(first), [0.0, 2.0])
+    npt.assert_array_equal(numbers(first)[:, 0], [0, 5])
+    assert not list(buttons.chunks(held(4.0, 5, 5), START))
+    (last,) = buttons.chunks(held(6.0, 0), START)
+    npt.assert_array_equal(numbers(last)[:, 0], [0])
+
+
+@given(ANGLES, st.floats(-1.5, 1.5), ANGLES)
+def test_quaternions_turn_the_axes_by_yaw_pitch_and_roll(roll, pitch, yaw):
+    (x, y, z, w) = quaternions(np.array([roll]), np.array([pitch]), np.array([yaw]))[0]
+    turned = np.array(
+        (
+            (1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)),
+            (2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)),
+            (2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)),
+        )
+    )
+    cr, sr, cp, sp, cy, sy = (f(a) for a in (roll, pitch, yaw) for f in (math.cos, math.sin))
+    about_x = np.array(((1, 0, 0), (0, cr, -sr), (0, sr, cr)))
+    about_y = np.array(((cp, 0, sp), (0, 1, 0), (-sp, 0, cp)))
+    about_z = np.array(((cy, -sy, 0), (sy, cy, 0), (0, 0, 1)))
+    npt.assert_allclose(turned, about_z @ about_y @ about_x, atol=1e-12)
+
+
+def strips(chunk: Chunk) -> list[np.ndarray]:
+    cells = next(iter(chunk.columns)).as_arrow_array().to_pylist()
+    return [np.array(strip) for cell in cells for strip in cell]
+
+
+@given(st.lists(st.integers(1, 9), min_size=1, max_size=8))
+def test_a_trail_is_one_unbroken_line_however_it_is_cut_into_batches(sizes):
+    total = sum(sizes)
+    points = np.column_stack((np.arange(total) * 0.1, np.zeros(total), np.ones(total)))
+    trail, found, done = Trail("/world/trail"), [], 0
+    for size in sizes:
+        rows = slice(done, done + size)
+        found += [s for chunk in trail.add(points[rows, 0], points[rows]) for s in strips(chunk)]
+        done += size
+    for before, after in itertools.pairwise(found):
+        npt.assert_array_equal(before[-1], after[0])
+    if total > 5:
+        npt.assert_allclose(found[0][0], points[0], atol=1e-6)
+        assert total - 1 - round(found[-1][-1][0] / 0.1) < 5
+
+
+def test_a_trail_that_is_lifted_starts_anew_and_standing_still_adds_nothing():
+    trail = Trail("/world/trail")
+    assert not list(trail.add(np.arange(20.0), np.zeros((20, 3))))
+    trail.lift()
+    points = np.column_stack((np.arange(6.0) + 50, np.zeros((6, 2))))
+    (chunk,) = trail.add(np.arange(6.0), points)
+    assert [strip[0][0] for strip in strips(chunk)] == [50.0]
+
+
+def component(chunk: Chunk, name: str) -> list:
+    columns = {column.component_descriptor().component: column for column in chunk.columns}
+    return columns[name].as_arrow_array().to_pylist()
+
+
+def test_hand_leash_and_force_are_shown_while_engaged_and_cleared_after():
+    handle = a_handle(START, 0)
+    handle.force[:] = (4.0, 0.0, 1.0)
+    pilot = [a_pilot_state(START + 0.01), a_pilot_state(START + 0.03, phase=Phase.DISENGAGED)]
+    motion = Motion(START, heading=True)
+    chunks = by_path(motion.chunks(batch_of((HANDLE, [handle]), (PILOT_STATE, pilot))))
+    npt.assert_allclose(component(chunks[schema.HAND], "Points3D:positions")[0], [(2.0, 3.0, 2.5)])
+    npt.assert_allclose(
+        component(chunks[schema.LEASH], "LineStrips3D:strips")[0], [[(1.5, 2.0, 2.0), (2.0, 3.0, 2.5)]]
+    )
+    turn, scale = 0.4, schema.ARROW_M_PER_N
+    arrow = (4.0 * math.cos(turn) * scale, 4.0 * math.sin(turn) * scale, scale)
+    npt.assert_allclose(component(chunks[schema.FORCE_ARROW], "Arrows3D:vectors")[0], [arrow], rtol=1e-6)
+    for path in (schema.HAND, schema.LEASH, schema.FORCE_ARROW):
+        for column in chunks[path].columns:
+            assert column.as_arrow_array().to_pylist()[1] == []
+
+
+def test_force_is_not_turned_where_the_handle_moves_along_the_worlds_axes():
+    handle = a_handle(START, 0)
+    handle.force[:] = (4.0, 0.0, 1.0)
+    batch = batch_of((HANDLE, [handle]), (PILOT_STATE, [a_pilot_state(START + 0.01)]))
+    chunks = by_path(Motion(START, heading=False).chunks(batch))
+    npt.assert_allclose(component(chunks[schema.FORCE_ARROW], "Arrows3D:vectors")[0], [(1.0, 0.0, 0.25)])
+
+
+def test_an_invalid_state_moves_nothing():
+    motion = Motion(START, heading=True)
+    assert not list(motion.chunks(batch_of((VEHICLE_STATE, [a_vehicle_state(START, valid=False)]))))
+    chunks = by_path(motion.chunks(batch_of((VEHICLE_STATE, [a_vehicle_state(START)]))))
+    npt.assert_allclose(component(chunks[schema.VEHICLE_POSE], "Transform3D:translation")[0], [(1, 2, 3)])
+
+
+NOON = datetime.datetime(2026, 11, 22, 12, tzinfo=datetime.UTC)
+
+
+@pytest.mark.parametrize(
+    ("ago", "start"), [(2.0, 98.0), (0.0, 100.0), (-3_600.0, 100.0), (3_600.0, 100.0)], ids=str
+)
+def test_the_run_began_where_the_wall_clock_says_unless_it_jumped(ago, start):
+    began = NOON - datetime.timedelta(seconds=ago)
+    assert start_of(began.isoformat(), NOON, 100.0) == pytest.approx(start)
+
+
+def test_rerun_is_the_version_the_schema_was_tried_with():
+    assert rr.__version__.startswith("0.41.")

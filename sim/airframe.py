@@ -1,0 +1,116 @@
+"""Airframes: what the simulated vehicle is, read strictly from a preset or a file like it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from pathlib import Path
+from typing import Annotated, Literal
+
+import msgspec
+from msgspec import Meta, Struct
+
+from sim.dynamics import Chi, Dynamic, Kinematic, Motion
+from sim.scenario import ScenarioError, error_sentence, read_toml
+
+PRESETS_FOLDER = Path(__file__).resolve().parent / "airframes"
+SUFFIX = ".toml"
+
+Model = Literal["kinematic", "dynamic"]
+Speed = Annotated[float, Meta(gt=0, le=100)]
+
+
+class Airframe(Struct, frozen=True, forbid_unknown_fields=True):
+    """A kind of vehicle.
+
+    Attributes:
+        schema: Version of this format.
+        name: Short, as in the file's name.
+        title: One line for people.
+        source: Where the numbers come from.
+        estimated: Which of them are estimates, and on what ground; "" if none.
+        radius: Of the sphere that collides, propellers included, m.
+        horizontal_speed: Largest reference forward and left together, m/s; likewise climb and descent.
+        yaw_rate_deg: Largest reference about the vertical, degrees/s.
+        tilt_deg: Largest roll or pitch, degrees.
+        attitude_time: Time constant with which roll and pitch follow the acceleration, s.
+        air_drag: D, what a metre per second of wind accelerates, 1/s; see `sim.dynamics.Dynamic`.
+        endurance_s: Hovering time from a full battery, s.
+        cells: Battery cells in series.
+        chi: The velocity response.
+    """
+
+    schema: Literal[1]
+    name: Annotated[str, Meta(min_length=1, max_length=48)]
+    title: Annotated[str, Meta(min_length=1)]
+    source: Annotated[str, Meta(min_length=1)]
+    radius: Annotated[float, Meta(gt=0, le=10)]
+    horizontal_speed: Speed
+    climb_speed: Speed
+    descent_speed: Speed
+    yaw_rate_deg: Annotated[float, Meta(gt=0, le=720)]
+    tilt_deg: Annotated[float, Meta(gt=0, lt=80)]
+    attitude_time: Annotated[float, Meta(gt=0, le=2)]
+    air_drag: Annotated[float, Meta(ge=0, le=10)]
+    endurance_s: Annotated[float, Meta(gt=0, le=1e6)]
+    cells: Annotated[int, Meta(ge=1, le=24)]
+    chi: Chi
+    estimated: str = ""
+
+    @property
+    def yaw_rate(self) -> float:
+        """Largest reference about the vertical, rad/s."""
+        return math.radians(self.yaw_rate_deg)
+
+
+MODELS: dict[Model, Callable[[Airframe], Motion]] = {
+    "kinematic": lambda _: Kinematic(),
+    "dynamic": lambda airframe: Dynamic(airframe.chi, airframe.air_drag),
+}
+
+
+def load_airframe(name: str) -> Airframe:
+    """Read an airframe by a preset's name, or by the path of a `.toml` file.
+
+    Raises:
+        ScenarioError: With file, key and reason in one sentence.
+    """
+    path = find_airframe(name)
+    try:
+        airframe = msgspec.convert(read_toml(path), Airframe, strict=True)
+    except msgspec.ValidationError as error:
+        raise ScenarioError(f"{path}: {error_sentence(error)}") from error
+    if unphysical := _unphysical(airframe):
+        raise ScenarioError(f"{path}: {unphysical}")
+    return airframe
+
+
+def find_airframe(name: str) -> Path:
+    """Return the file of an airframe.
+
+    Raises:
+        ScenarioError: There is none; the message lists the presets.
+    """
+    given = Path(name)
+    if given.suffix == SUFFIX:
+        return given
+    shipped = PRESETS_FOLDER / f"{name}{SUFFIX}"
+    if shipped.parent == PRESETS_FOLDER and shipped.is_file():
+        return shipped
+    known = ", ".join(sorted(path.stem for path in PRESETS_FOLDER.glob(f"*{SUFFIX}")))
+    raise ScenarioError(f"{name}: no such airframe; give a .toml file or one of: {known}.")
+
+
+def _unphysical(airframe: Airframe) -> str | None:
+    """Return what makes the response impossible or unstable, as `key: reason`, or None.
+
+    M and the damping must be positive; while turning at ω, forward and left stay stable only if the determinant
+    of C(ω) is positive too (its trace is): χ₁₀ χ₁₄ − ω² χ₁₁ χ₁₃ > 0.
+    """
+    chi = airframe.chi
+    for key in ("chi_1", "chi_3", "chi_5", "chi_9", "chi_10", "chi_14", "chi_16", "chi_19"):
+        if getattr(chi, key) <= 0.0:
+            return f"chi.{key}: {getattr(chi, key)} is not physical; inertia and damping are above 0."
+    if chi.chi_10 * chi.chi_14 <= airframe.yaw_rate**2 * chi.chi_11 * chi.chi_13:
+        return "chi.chi_11, chi.chi_13: unstable while turning at yaw_rate_deg; lower one of the three."
+    return None

@@ -1,7 +1,8 @@
 """A flight without a screen: the scripted hand flies a mission through the very processes a person would.
 
-A simulated operator (`sim.operator`) looks at the vehicle and decides where it should go; what they want of it is
-turned back through the rate mapping into where the hand should be, and the arm (`drivers.scripted`) takes it there.
+A simulated operator (`sim.operator`) looks at the vehicle and decides where it should go; what they want of it
+is turned back through the rate mapping into where the hand should be, and the arm (`drivers.scripted`) takes it
+there.
 """
 
 from __future__ import annotations
@@ -15,16 +16,15 @@ from drivers.stick import StickSender
 from groundstation.bus import Bus
 from groundstation.console import Console, Snapshot
 from groundstation.errors import InputError
-from groundstation.messages import MISSION_PROGRESS, CommandAnswer, CommandKind, Health, Phase
+from groundstation.messages import CommandAnswer, CommandKind, Health, Phase
 from groundstation.pilot.mapping import RateMapping
 from groundstation.processes import Supervisor
 from groundstation.run import Run
 from groundstation.training.director import Director, Stage
+from groundstation.training.follower import MissionFollower
 from groundstation.training.mission import Mission
 from groundstation.training.summary import Narrator, summarise
-from sim.airframe import load_airframe
 from sim.operator import Operator
-from sim.world import World
 
 TURN_S = 0.02
 _STEP_S = 20.0
@@ -78,8 +78,6 @@ class HeadlessFlight:
         self._since: float | None = None
         self._next_try = 0.0
         self._refusal = ""
-        self._seen_t = 0.0
-        self._controlled_t = 0.0
         self.step = Step.CONNECT
         self.failure = ""
 
@@ -87,7 +85,6 @@ class HeadlessFlight:
         """Look at the newest of everything and do what comes next."""
         if self._since is None:
             self._since = view.t
-        self._follow(view)
         self._note_refusals(view.answers)
         self._hand.move(view, flying=self.step is Step.FLY)
         if self._done(view):
@@ -104,17 +101,6 @@ class HeadlessFlight:
         self._console.command(CommandKind.DISENGAGE)
         self.failure = self.failure or why
         self.step = Step.DONE
-
-    def _follow(self, view: Snapshot) -> None:
-        status, state, pilot = view.status, view.vehicle, view.pilot
-        if status and state and state.valid and state.t > self._seen_t:
-            self._seen_t = state.t
-            x, y, z, _ = state.position
-            self._director.vehicle(state.t, (x, y, z), in_air=bool(status.in_air), armed=bool(status.armed))
-        if pilot and pilot.phase == Phase.ENGAGED and pilot.t > self._controlled_t:
-            self._controlled_t = pilot.t
-            force = tuple(view.handle.force) if view.handle else (0.0, 0.0, 0.0)
-            self._director.controller((pilot.error[0], pilot.error[1], pilot.error[2]), force)
 
     def _note_refusals(self, answers: tuple[CommandAnswer, ...]) -> None:
         for answer in answers:
@@ -205,20 +191,19 @@ def fly_headless(run: Run, bus: Bus, supervisor: Supervisor, *, as_json: bool, s
     from drivers.scripted import WORKSPACE
 
     console = Console(bus, "headless")
-    airframe = load_airframe(mission.vehicle.airframe)
-    director = Director(mission, World(mission.obstacle), airframe.radius)
+    follower = MissionFollower(mission, bus)
+    director = follower.director
     sender = StickSender(run.device.partition(":")[2])
     mapping = RateMapping(run.settings.mapping, WORKSPACE)
     flight = HeadlessFlight(mission, console, director, Hand(mission, mapping, sender, seed, time.monotonic))
-    progress = bus.publisher(MISSION_PROGRESS)
     narrator = Narrator(sys.stderr)
     view = console.snapshot()
     while flight.step is not Step.DONE:
         for sentence in supervisor.poll():
             flight.abort(sentence)
         view = console.snapshot()
+        follower.look(view)
         flight.turn(view)
-        progress.send(director.progress(view.t))
         narrator.tell(flight.step.value, director, view)
         bus.heartbeat()
         time.sleep(TURN_S)

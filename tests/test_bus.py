@@ -29,7 +29,10 @@ def bus(run_id):
 
 
 def left_behind(run_id: str) -> list[Path]:
-    return [*Path("/dev/shm").glob(f"groundstation-{run_id}_*"), *Path(bus_module.run_folder(run_id)).glob("*")]
+    return [
+        *Path("/dev/shm").glob(f"groundstation-{run_id}_*"),
+        *Path(bus_module.run_folder(run_id)).glob("*"),
+    ]
 
 
 def test_records_arrive_in_order_and_whole(bus):
@@ -117,7 +120,10 @@ def test_what_a_dead_program_left_is_swept_by_the_next(tmp_path, monkeypatch):
     monkeypatch.setattr(bus_module.tempfile, "gettempdir", lambda: str(tmp_path))
     finished = subprocess.Popen([sys.executable, "-c", ""])
     finished.wait()
-    dead, alive = tmp_path / f"groundstation-{finished.pid}-abc", tmp_path / f"groundstation-{os.getpid()}-abc"
+    dead, alive = (
+        tmp_path / f"groundstation-{finished.pid}-abc",
+        tmp_path / f"groundstation-{os.getpid()}-abc",
+    )
     dead.mkdir()
     alive.mkdir()
     sweep_dead_runs()

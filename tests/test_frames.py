@@ -31,7 +31,8 @@ def test_flu_and_frd_are_each_others_inverse(velocity):
 
 
 @pytest.mark.parametrize(
-    ("heading_deg", "yaw"), [(0, math.pi / 2), (90, 0), (180, -math.pi / 2), (270, math.pi), (45, math.pi / 4)]
+    ("heading_deg", "yaw"),
+    [(0, math.pi / 2), (90, 0), (180, -math.pi / 2), (270, math.pi), (45, math.pi / 4)],
 )
 def test_headings_by_hand(heading_deg, yaw):
     assert math.isclose(frames.yaw_from_heading(heading_deg), yaw, abs_tol=1e-12)

@@ -80,14 +80,29 @@ def test_a_missing_file_and_a_folder_are_told(tmp_path):
 
 
 scalars = st.one_of(
-    st.none().map(lambda _: ""), st.booleans(), st.integers(-(2**62), 2**62), st.floats(), st.text(max_size=20)
+    st.none().map(lambda _: ""),
+    st.booleans(),
+    st.integers(-(2**62), 2**62),
+    st.floats(),
+    st.text(max_size=20),
 )
 values = st.recursive(
     scalars,
     lambda inner: st.lists(inner, max_size=4) | st.dictionaries(st.text(max_size=8), inner, max_size=4),
     max_leaves=12,
 )
-KEYS = ["schema", "name", "title", "route", "target", "criteria", "vehicle", "wind", "obstacle", "takeoff_altitude_m"]
+KEYS = [
+    "schema",
+    "name",
+    "title",
+    "route",
+    "target",
+    "criteria",
+    "vehicle",
+    "wind",
+    "obstacle",
+    "takeoff_altitude_m",
+]
 
 
 @given(st.dictionaries(st.sampled_from(KEYS) | st.text(max_size=8), values, max_size=8))

@@ -37,9 +37,13 @@ def packer():
 
 def setpoint(velocity=VELOCITY, mask=MASK, frame=8, position=0.0) -> bytes:
     forward, left, up, yaw_rate = velocity
-    return packer().set_position_target_local_ned_encode(
-        1, 1, 1, frame, mask, position, 0, 0, forward, -left, -up, 0, 0, 0, 0, -yaw_rate
-    ).pack(packer())
+    return (
+        packer()
+        .set_position_target_local_ned_encode(
+            1, 1, 1, frame, mask, position, 0, 0, forward, -left, -up, 0, 0, 0, 0, -yaw_rate
+        )
+        .pack(packer())
+    )
 
 
 def test_an_authorised_setpoint_passes_while_it_is_young(gate, clock):

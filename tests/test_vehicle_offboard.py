@@ -64,7 +64,10 @@ def test_a_refusal_ends_it_without_hold(stream):
 
 
 def test_letting_go_holds(flying):
-    assert flying.step(seen(11.0, active=False, mode=FlightMode.OFFBOARD, mode_t=10.9)) == (Act.CLOSE_AND_HOLD, "")
+    assert flying.step(seen(11.0, active=False, mode=FlightMode.OFFBOARD, mode_t=10.9)) == (
+        Act.CLOSE_AND_HOLD,
+        "",
+    )
 
 
 def test_a_silent_pilot_ends_in_hold(flying):

@@ -21,7 +21,6 @@ _TURN_S = 0.05
 _BATCH_S = 0.5
 _LIVE_BATCH_S = 0.1
 _NICENESS = 10
-_NICENESS = 10
 
 
 def record(run: Run, bus: Bus, lifeline: Lifeline) -> None:

@@ -1,0 +1,43 @@
+"""Follows a mission live: what the console sees goes to the director, and how it is going onto the bus."""
+
+from __future__ import annotations
+
+from groundstation.bus import Bus
+from groundstation.console import Snapshot
+from groundstation.messages import MISSION_PROGRESS, Phase
+from groundstation.training.director import Director
+from groundstation.training.mission import Mission
+from sim.airframe import load_airframe
+from sim.world import World
+
+
+class MissionFollower:
+    """Feeds a director from snapshots, in any flight, by hand or headless.
+
+    Args:
+        mission: What is flown.
+        bus: Where the progress goes.
+
+    Attributes:
+        director: Knows how the mission is going.
+    """
+
+    def __init__(self, mission: Mission, bus: Bus) -> None:
+        radius = load_airframe(mission.vehicle.airframe).radius
+        self.director = Director(mission, World(mission.obstacle), radius)
+        self._progress = bus.publisher(MISSION_PROGRESS)
+        self._seen_t = 0.0
+        self._controlled_t = 0.0
+
+    def look(self, view: Snapshot) -> None:
+        """Take note of what is new in a snapshot, and tell the bus."""
+        status, state, pilot = view.status, view.vehicle, view.pilot
+        if status and state and state.valid and state.t > self._seen_t:
+            self._seen_t = state.t
+            x, y, z, _ = state.position
+            self.director.vehicle(state.t, (x, y, z), in_air=bool(status.in_air), armed=bool(status.armed))
+        if pilot and pilot.phase == Phase.ENGAGED and pilot.t > self._controlled_t:
+            self._controlled_t = pilot.t
+            force = tuple(view.handle.force) if view.handle else (0.0, 0.0, 0.0)
+            self.director.controller((pilot.error[0], pilot.error[1], pilot.error[2]), force)
+        self._progress.send(self.director.progress(view.t))

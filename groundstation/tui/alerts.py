@@ -1,0 +1,138 @@
+"""The one line above the instruments: the worst that is wrong now, else what to do next."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+from groundstation.messages import Phase, Severity
+from groundstation.tui import judge
+from groundstation.tui.acts import armed, in_air
+from groundstation.tui.frame import REPORT_STALE_S, STATUS_STALE_S, Frame
+from groundstation.tui.notes import from_event, words
+from groundstation.tui.rows import quantity, span_of_time
+
+Alert = tuple[Severity, str]
+
+_RECENT_S = 5.0
+_CONSEQUENCES = {
+    "pilot": "no force, and the vehicle is told to hold",
+    "link": "nothing reaches the vehicle; its own failsafe holds it",
+    "sim": "the simulated vehicle has gone",
+    "recorder": "this flight is no longer recorded",
+}
+
+
+def worst(frame: Frame) -> Alert:
+    """Return the first of the alarms, else of the warnings, else what can be done next."""
+    alerts = list(_alerts(frame))
+    for wanted in (Severity.ALARM, Severity.WARNING):
+        for severity, text in alerts:
+            if severity is wanted:
+                return severity, text
+    return Severity.INFO, next_step(frame)
+
+
+def _alerts(frame: Frame) -> Iterator[Alert]:
+    yield from _processes(frame)
+    yield from _link(frame)
+    yield from _state(frame)
+    yield from _device(frame)
+    yield from _said(frame)
+
+
+def _processes(frame: Frame) -> Iterator[Alert]:
+    for role, consequence in _CONSEQUENCES.items():
+        state = frame.states.get(role)
+        if state == "ended":
+            yield Severity.ALARM, f"{role} has ended: {consequence}."
+        elif state == "silent":
+            yield Severity.ALARM, f"{role} does not answer: {consequence}."
+
+
+def _link(frame: Frame) -> Iterator[Alert]:
+    status = frame.snapshot.status
+    if status is None or not status.heard_t:
+        return
+    age = judge.link_age(status, frame.now)
+    severity = judge.link(status, frame.now, frame.run.settings.safety.link_warning_s)
+    if severity is Severity.ALARM:
+        yield severity, f"Link lost: the vehicle has been silent for {span_of_time(age)}."
+    elif severity is Severity.WARNING:
+        yield severity, f"The vehicle has been silent for {span_of_time(age)}."
+    elif frame.age(status) > STATUS_STALE_S:
+        yield Severity.WARNING, f"No word from the link process for {span_of_time(frame.age(status))}."
+    if judge.battery(status.battery) is not Severity.INFO:
+        yield judge.battery(status.battery), f"Battery at {quantity(100 * status.battery, '%', 0)}: land."
+
+
+def _state(frame: Frame) -> Iterator[Alert]:
+    vehicle = frame.snapshot.vehicle
+    if vehicle is None or not in_air(frame.snapshot):
+        return
+    if frame.age(vehicle) > frame.run.settings.safety.state_stale_s:
+        yield (
+            Severity.ALARM,
+            f"Position is {span_of_time(frame.age(vehicle))} old: do not trust map or force.",
+        )
+    elif not vehicle.valid:
+        yield Severity.ALARM, "The vehicle's position is not valid."
+
+
+def _device(frame: Frame) -> Iterator[Alert]:
+    device = frame.snapshot.device
+    if device is None:
+        return
+    if frame.age(device) > REPORT_STALE_S:
+        yield Severity.WARNING, f"No word from the haptic device for {span_of_time(frame.age(device))}."
+    elif not device.present:
+        yield Severity.ALARM, "The haptic device is gone: plug it in again; the hand is uncoupled."
+    elif not device.homed:
+        yield Severity.WARNING, "The haptic device is not homed: move the handle through its whole range."
+
+
+def _said(frame: Frame) -> Iterator[Alert]:
+    recent = [from_event(event) for event in frame.snapshot.events[-8:]]
+    for note in reversed([*recent, *frame.notes]):
+        if note.severity is not Severity.INFO and frame.now - note.t < _RECENT_S:
+            yield note.severity, note.text
+
+
+def next_step(frame: Frame) -> str:
+    """Say what the operator can do next."""
+    snapshot = frame.snapshot
+    status, pilot = snapshot.status, frame.pilot
+    if status is None or not status.connected:
+        return f"Waiting for the vehicle at {frame.run.url} …"
+    if not armed(snapshot):
+        return "Ready on the ground. A arms."
+    if not in_air(snapshot):
+        return "Armed on the ground. T takes off."
+    if pilot is None:
+        return "In the air. Waiting for the pilot process …"
+    if pilot.phase == Phase.ENGAGED:
+        return _engaged_hint(frame)
+    if pilot.phase == Phase.ENGAGING:
+        return "Engaging: the vehicle is asked to follow …"
+    reason = words(pilot.reason)
+    uncoupled = f"Hand uncoupled ({reason})." if reason else "In the air, hand uncoupled."
+    return f"{uncoupled} {'E engages.' if pilot.centred else 'Centre the handle, then E engages.'}"
+
+
+def _engaged_hint(frame: Frame) -> str:
+    pilot, mission = frame.pilot, frame.run.mission
+    stick = "Space lets go of the stick" if frame.stick is not None else "The handle's centre is standstill"
+    if pilot is not None and pilot.on_leash:
+        return "On the leash: the vehicle does not keep up, the force shows where it is."
+    target = distance_to_target(frame)
+    if mission is not None and mission.target is not None and math.isfinite(target):
+        return f"Engaged. Target {quantity(target, 'm', 1)} away. {stick}, X releases."
+    return f"Engaged. {stick}, X releases, H holds."
+
+
+def distance_to_target(frame: Frame) -> float:
+    """Return the way to the mission's target, m; NaN where there is none."""
+    mission, vehicle = frame.run.mission, frame.snapshot.vehicle
+    if mission is None or mission.target is None or vehicle is None:
+        return math.nan
+    return math.dist(mission.target.position, tuple(vehicle.position)[:3])

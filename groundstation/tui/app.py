@@ -1,0 +1,225 @@
+"""The Textual application: one timer pulls the newest of everything and paints, one keeps the stick alive.
+
+Nothing here flies: it shows what is on the bus and sends the operator's commands. The stick's deflection goes
+out at a steady rate, so that a screen that hangs is a stick gone silent, which uncouples the hand.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import signal
+import time
+from collections.abc import Callable, Iterable
+from pathlib import Path
+from typing import ClassVar
+
+from textual.app import App, SystemCommand
+from textual.binding import Binding, BindingType
+from textual.screen import Screen
+
+from groundstation.bus import Bus, run_folder
+from groundstation.console import Console, Snapshot
+from groundstation.messages import CommandKind, FlightMode, Severity
+from groundstation.run import Run
+from groundstation.tui.acts import ACTS, BY_NAME, Act, Ask, coupled, in_air
+from groundstation.tui.frame import Frame, Reader, Supervisor, workspace
+from groundstation.tui.hand import Hand, StickSender
+from groundstation.tui.notes import Answers
+from groundstation.tui.screens.dialog import Confirm, Help
+from groundstation.tui.screens.flight import FlightScreen
+from groundstation.tui.theme import THEME
+from groundstation.tui.track import History, Track
+
+# The stick counts as gone after 0.2 s; a busy screen may miss several of these.
+STICK_HZ = 50.0
+_POLL_S = 0.1
+
+
+class FlightApp(App[int]):
+    """The screen of a run.
+
+    Args:
+        run: The run.
+        console: The operator's side of the bus.
+        supervisor: Says how the other processes are.
+        stick: Takes the on-screen stick's deflection, or None where another device is in use.
+        clock: Monotonic seconds, the bus's clock.
+    """
+
+    TITLE = "groundstation"
+    CSS_PATH = "app.tcss"
+    ALLOW_SELECT = False
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("ctrl+c,ctrl+q", "quit", "Quit", show=False, priority=True)
+    ]
+
+    def __init__(
+        self,
+        run: Run,
+        console: Reader,
+        supervisor: Supervisor,
+        stick: StickSender | None,
+        clock: Callable[[], float] = time.monotonic,
+    ) -> None:
+        super().__init__()
+        self.register_theme(THEME)
+        self.theme = THEME.name
+        self.hand = Hand()
+        self._flight_run, self._reader, self._supervisor = run, console, supervisor
+        self._stick, self._clock = stick, clock
+        self._answers = Answers()
+        self._track, self._history = Track(), History()
+        self._snapshot = console.snapshot()
+        self._started = self._snapshot.t
+        self._next_poll = 0.0
+        self._flight = FlightScreen(self.hand if stick is not None else None)
+
+    def get_default_screen(self) -> Screen[None]:
+        """The flight screen is what everything else stands over."""
+        return self._flight
+
+    def on_mount(self) -> None:
+        """Start the two timers."""
+        self.set_class(not self._flight_run.simulated, "-real")
+        loop = asyncio.get_running_loop()
+        for number in (signal.SIGTERM, signal.SIGHUP):
+            # Ended from outside, or the terminal has gone: out by the same door, terminal restored.
+            loop.add_signal_handler(number, self._end, 128 + number)
+        self.set_interval(1.0 / self._flight_run.settings.rates.screen, self.pull)
+        if self._stick is not None:
+            self.set_interval(1.0 / STICK_HZ, self._send_stick)
+
+    def pull(self) -> None:
+        """Take the newest of everything and show it."""
+        snapshot = self._snapshot = self._reader.snapshot()
+        if snapshot.t >= self._next_poll:
+            self._next_poll = snapshot.t + _POLL_S
+            self._supervisor.poll()
+        for note in self._answers.take(snapshot):
+            severity = "error" if note.severity is Severity.ALARM else "warning"
+            self.notify(note.text, severity=severity, timeout=6.0, markup=False)
+        stale_s = self._flight_run.settings.safety.state_stale_s
+        if snapshot.vehicle is not None and snapshot.vehicle.valid:
+            self._track.add(snapshot.vehicle.position[0], snapshot.vehicle.position[1])
+        self._history.add(snapshot, stale_s)
+        self._flight.show(self._frame(snapshot))
+
+    def _frame(self, snapshot: Snapshot) -> Frame:
+        return Frame(
+            snapshot=snapshot,
+            run=self._flight_run,
+            started=self._started,
+            states=self._supervisor.states(),
+            stick=self.hand.share if self._stick is not None else None,
+            hindrances={act.name: act.hindrance(snapshot) for act in ACTS},
+            notes=tuple(self._answers.notes),
+            track=self._track,
+            history=self._history,
+        )
+
+    def _send_stick(self) -> None:
+        if self._stick is not None:
+            yaw_range = self._flight_run.settings.mapping.yaw_range
+            position, yaw = self.hand.deflection(workspace(self._snapshot), yaw_range)
+            self._stick.send(position, yaw, 0, self._clock())
+
+    def on_app_blur(self) -> None:
+        """The operator looks elsewhere: let go of the stick."""
+        self._flight.action_centre()
+
+    def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
+        """Grey what cannot be done now."""
+        if action == "act" and parameters:
+            act = BY_NAME.get(str(parameters[0]))
+            return True if act is None or not act.hindrance(self._snapshot) else None
+        return super().check_action(action, parameters)
+
+    def action_act(self, name: str) -> None:
+        """Do one of the operator's acts, asking back where that is due."""
+        act = BY_NAME[name]
+        if act.ask is Ask.NEVER or (act.ask is Ask.REAL and self._flight_run.simulated):
+            self._command(act)
+        elif not self._hindered(act):
+            which = "the simulated" if self._flight_run.simulated else "the REAL"
+            self._ask(f"{act.label} {which} vehicle?", act.explains, act.key, lambda: self._command(act))
+
+    def _hindered(self, act: Act) -> bool:
+        """Say why an act cannot be done, if so."""
+        hindrance = act.hindrance(self._snapshot)
+        if hindrance:
+            self.notify(f"{act.label}: {hindrance}.", timeout=3.0, markup=False)
+        return bool(hindrance)
+
+    def _command(self, act: Act) -> None:
+        """Send a command, unless it has become impossible while it was asked about."""
+        if not self._hindered(act):
+            self._answers.sent(self._reader.command(act.kind), act.kind, self._snapshot.t)
+
+    def _ask(self, question: str, consequence: str, key: str, then: Callable[[], None]) -> None:
+        def answered(yes: bool | None) -> None:
+            if yes:
+                then()
+
+        self.push_screen(Confirm(question, consequence, key), answered)
+
+    def _end(self, code: int) -> None:
+        """Leave at once with an exit code; the pilot lets go when it is ended."""
+        self.hand.centre()
+        self.exit(code)
+
+    def action_help(self) -> None:
+        """Show the keys."""
+        self.push_screen(Help())
+
+    async def action_quit(self) -> None:
+        """Leave; in the air, ask first."""
+        if isinstance(self.screen, Confirm):
+            return
+        if in_air(self._snapshot):
+            text = "The hand is uncoupled. A coupled vehicle holds; one that lands or returns goes on."
+            self._ask("The vehicle is in the air. Quit?", text, "q", self._leave)
+        else:
+            self._leave()
+
+    def _leave(self) -> None:
+        """End the screen; a vehicle that follows the hand is left holding."""
+        self.hand.centre()
+        status = self._snapshot.status
+        offboard = status is not None and status.mode == FlightMode.OFFBOARD
+        if coupled(self._snapshot) or offboard:
+            self._reader.command(CommandKind.HOLD)
+        self.exit(0)
+
+    def get_system_commands(self, screen: Screen[object]) -> Iterable[SystemCommand]:
+        """List all acts by name; those that cannot be done now say why."""
+        del screen
+        for act in ACTS:
+            hindrance = act.hindrance(self._snapshot)
+            words = f"Not now: {hindrance}." if hindrance else act.explains
+            yield SystemCommand(
+                f"{act.label} ({act.key})", words, lambda name=act.name: self.action_act(name)
+            )
+        yield SystemCommand("Centre the stick (space)", "All axes at once.", self._flight.action_centre)
+        yield SystemCommand("Help (?)", "All keys.", self.action_help)
+        yield SystemCommand("Quit (q)", "Asks first while the vehicle is in the air.", self.action_quit)
+
+
+def run_screen(run: Run, console: Reader, supervisor: Supervisor, stick: StickSender | None) -> int:
+    """Show the screen until the operator leaves; return the exit code."""
+    app = FlightApp(run, console, supervisor, stick)
+    code = app.run()
+    return (app.return_code or 0) if code is None else code
+
+
+def fly_on_screen(run: Run, bus: Bus, supervisor: Supervisor) -> int:
+    """Show the screen of a run whose processes run; return the exit code."""
+    from drivers.stick import StickSender as Sender
+
+    address = Path(run.device.partition(":")[2])
+    # A device whose socket lies in the run's own folder is moved by this program and no other.
+    stick = Sender(str(address)) if address.parent == run_folder(run.run_id) else None
+    try:
+        return run_screen(run, Console(bus, "screen"), supervisor, stick)
+    finally:
+        if stick is not None:
+            stick.close()

@@ -1,0 +1,138 @@
+"""The flight screen: essentials always, more instruments where the terminal is larger."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import ClassVar
+
+from textual import events
+from textual.app import ComposeResult
+from textual.binding import Binding, BindingType
+from textual.containers import Horizontal, Vertical
+from textual.screen import Screen
+
+from groundstation.tui.acts import ACTS
+from groundstation.tui.frame import Frame
+from groundstation.tui.hand import Hand
+from groundstation.tui.widgets.altitude import Altitude
+from groundstation.tui.widgets.banner import Banner
+from groundstation.tui.widgets.curves import Curves
+from groundstation.tui.widgets.force import Force
+from groundstation.tui.widgets.happenings import Happenings
+from groundstation.tui.widgets.instrument import Instrument
+from groundstation.tui.widgets.keys import Keys
+from groundstation.tui.widgets.numbers import FlightLine, Numbers
+from groundstation.tui.widgets.overview import Overview
+from groundstation.tui.widgets.status import StatusBar
+from groundstation.tui.widgets.stick import FORWARD, LEFT, UP, YAW, Stick
+from groundstation.tui.widgets.system import System
+from groundstation.tui.widgets.tracking import Tracking
+from groundstation.tui.widgets.velocity import Velocity
+
+# Key, axis, direction, and what it moves; steps stay until they are taken back or the stick is centred.
+STEPS: tuple[tuple[str, int, int, str], ...] = (
+    ("up", FORWARD, 1, "forward"),
+    ("down", FORWARD, -1, "back"),
+    ("left", LEFT, 1, "left"),
+    ("right", LEFT, -1, "right"),
+    ("w", UP, 1, "up"),
+    ("s", UP, -1, "down"),
+    ("a", YAW, 1, "turn left"),
+    ("d", YAW, -1, "turn right"),
+)
+
+
+def _bindings() -> list[BindingType]:
+    acts = [Binding(",".join(act.keys), f"app.act('{act.name}')", act.label, show=False) for act in ACTS]
+    steps = [
+        Binding(key, f"step({axis}, {direction})", f"Stick {words}", show=False)
+        for key, axis, direction, words in STEPS
+    ]
+    return [
+        *acts,
+        *steps,
+        Binding("space,0", "centre", "Stick to the centre", show=False),
+        Binding("question_mark,f1", "app.help", "Help", show=False),
+        Binding("q,Q", "app.quit", "Quit", show=False),
+    ]
+
+
+class FlightScreen(Screen[None]):
+    """The instruments, laid out once and then only painted.
+
+    Args:
+        hand: The on-screen stick's deflection, or None where another device is in use.
+    """
+
+    ALLOW_SELECT = False
+    BINDINGS: ClassVar[list[BindingType]] = _bindings()
+    HORIZONTAL_BREAKPOINTS = [(0, "-narrow"), (110, "-normal"), (170, "-wide")]  # noqa: RUF012 - Textual's
+    VERTICAL_BREAKPOINTS = [(0, "-short"), (36, "-tall"), (52, "-high")]  # noqa: RUF012 - Textual's
+
+    def __init__(self, hand: Hand | None) -> None:
+        super().__init__()
+        self._hand = hand
+        self._stick = Stick(hand, id="stick")
+        self._instruments: list[Instrument] = []
+        self._latest: Frame | None = None
+
+    def compose(self) -> ComposeResult:
+        """Lay out the instruments."""
+        yield StatusBar(id="status")
+        yield FlightLine(id="line")
+        yield Banner(id="banner")
+        with Horizontal(id="body"):
+            with Vertical(id="where"):
+                with Horizontal(id="place"):
+                    yield Overview(id="map")
+                    yield Altitude(id="altitude")
+                yield Happenings(id="events")
+            with Vertical(id="hand"):
+                yield Numbers(id="numbers")
+                yield self._stick
+                yield Force(id="force")
+                yield Tracking(id="tracking")
+                yield Velocity(id="velocity")
+                yield System(id="system")
+            yield Curves(id="curves")
+        yield Keys(id="keys")
+
+    def on_mount(self) -> None:
+        """Remember the instruments."""
+        self._instruments = list(self.query(Instrument))
+
+    def show(self, frame: Frame) -> None:
+        """Hand a frame to the instruments that are to be seen."""
+        self._latest = frame
+        for instrument in self._instruments:
+            if instrument.display:
+                instrument.show(frame)
+
+    def action_step(self, axis: int, direction: int) -> None:
+        """Move the on-screen stick by a step."""
+        if self._hand is not None:
+            self._hand.step(axis, direction)
+
+    def action_centre(self) -> None:
+        """Let go of the on-screen stick."""
+        self._stick.let_go()
+
+    def on_screen_suspend(self) -> None:
+        """A dialog comes up: no hand moves the vehicle meanwhile."""
+        self.action_centre()
+
+    def on_key(self, event: events.Key) -> None:
+        """Say why a key does nothing now."""
+        reason = reason_for(event.key, self._latest.hindrances if self._latest else {})
+        if reason:
+            self.notify(reason, timeout=3.0)
+            event.stop()
+
+
+def reason_for(key: str, hindrances: Mapping[str, str]) -> str:
+    """Return why the act of a key cannot be done, or "" where the key is no act's."""
+    for act in ACTS:
+        if key in act.keys:
+            hindrance = hindrances.get(act.name, "")
+            return f"{act.label}: {hindrance}." if hindrance else ""
+    return ""

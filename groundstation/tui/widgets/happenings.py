@@ -1,0 +1,58 @@
+"""The latest events, newest at the bottom."""
+
+from __future__ import annotations
+
+from groundstation.messages import Severity
+from groundstation.tui.frame import Frame
+from groundstation.tui.notes import Note, merged
+from groundstation.tui.rows import Row, clock
+from groundstation.tui.theme import MARKS, TONES, Tone
+from groundstation.tui.widgets.instrument import Instrument
+
+_WITH_SOURCE = 60
+_LOW = 4
+
+
+class Happenings(Instrument):
+    """Lines of time, mark and words; long ones go on in the next line."""
+
+    BORDER_TITLE = "events"
+    EVERY = 3
+
+    def draw(self, frame: Frame, width: int, height: int) -> list[Row]:
+        """Draw the newest that fit."""
+        notes = merged(frame.snapshot.events, frame.notes, height)
+        rows: list[Row] = []
+        for note in notes:
+            lines = _lines(note, note.t - frame.started, width)
+            # In a low pane only the newest may take more than its line.
+            brief = height <= _LOW and note is not notes[-1] and len(lines) > 1
+            rows.extend([[*lines[0][:-1], (f"{lines[0][-1][0]} …", lines[0][-1][1])]] if brief else lines)
+        return rows[-height:] if rows else [[(" nothing yet", Tone.FAINT)]]
+
+
+def _lines(note: Note, t: float, width: int) -> list[Row]:
+    tone = Tone.TEXT if note.severity is Severity.INFO else TONES[note.severity]
+    source = f"{note.source:<9}" if width >= _WITH_SOURCE else ""
+    head = f" {clock(t)} "
+    room = max(width - len(head) - 4 - len(source), 10)
+    pieces = _wrapped(note.text, room)
+    first: Row = [
+        (head, Tone.MUTED),
+        (f"{MARKS[note.severity]} ", TONES[note.severity]),
+        (source, Tone.MUTED),
+    ]
+    rows: list[Row] = [[*first, (pieces[0], tone)]]
+    indent = " " * (len(head) + 2 + len(source))
+    rows.extend([(indent, Tone.TEXT), (piece, tone)] for piece in pieces[1:])
+    return rows
+
+
+def _wrapped(text: str, width: int) -> list[str]:
+    """Break a sentence between words; textwrap is several times slower, and this runs in every frame."""
+    lines = [""]
+    for word in text.split():
+        if lines[-1] and len(lines[-1]) + 1 + len(word) > width:
+            lines.append("")
+        lines[-1] = f"{lines[-1]} {word}" if lines[-1] else word
+    return lines

@@ -1,0 +1,104 @@
+"""What all instruments share: rows drawn from a frame, of which only those that changed are painted."""
+
+from __future__ import annotations
+
+import math
+from typing import ClassVar
+
+from rich.segment import Segment
+from rich.style import Style
+from textual import events
+from textual.geometry import Region
+from textual.strip import Strip
+from textual.widget import Widget
+
+from groundstation.tui.frame import Frame
+from groundstation.tui.rows import Row, fit, span_of_time
+from groundstation.tui.theme import STYLES, Tone
+
+_STALE_CLASS = "-stale"
+
+
+class Instrument(Widget, can_focus=False):
+    """An instrument: subclass it, give it a title and `draw`. Nothing is composed or laid out per frame.
+
+    Attributes:
+        EVERY: Drawn every so many frames; digits that change faster than ten times a second are not read.
+        STALE_S: From this age of its data on, all of it is shown as stale.
+    """
+
+    EVERY: ClassVar[int] = 1
+    STALE_S: ClassVar[float] = math.inf
+    ALLOW_SELECT = False
+
+    def __init__(self, *, id: str | None = None) -> None:  # noqa: A002 - Textual's own name
+        super().__init__(id=id)
+        self._rows: list[Row] = []
+        self._frame: Frame | None = None
+        self._styles: dict[Tone, Style] = {}
+        self._turn = 0
+
+    def draw(self, frame: Frame, width: int, height: int) -> list[Row]:
+        """Return the rows of the content area, at most `height` of `width` cells each."""
+        raise NotImplementedError
+
+    def data_age(self, frame: Frame) -> float:
+        """Return the age of what it shows, s; infinite where nothing has come yet."""
+        del frame
+        return 0.0
+
+    def show(self, frame: Frame) -> None:
+        """Take a new frame, and paint what changed if it is this instrument's turn."""
+        self._frame = frame
+        self._turn += 1
+        # Before it is mounted, Textual forgets what is asked to be painted.
+        if self.is_mounted and self.size and (not self._rows or self._turn % self.EVERY == 0):
+            self._paint(frame)
+
+    def _paint(self, frame: Frame) -> None:
+        width, height = self.size
+        self._tell_age(self.data_age(frame))
+        rows = self.draw(frame, width, height)
+        rows.extend([] for _ in range(height - len(rows)))
+        if len(rows) != len(self._rows):
+            self._rows = rows
+            self.refresh()
+            return
+        changed = [Region(0, y, width, 1) for y in range(len(rows)) if rows[y] != self._rows[y]]
+        self._rows = rows
+        if changed:
+            self.refresh(*changed)
+
+    def _tell_age(self, age: float) -> None:
+        stale = age > self.STALE_S
+        if stale != self.has_class(_STALE_CLASS):
+            self.set_class(stale, _STALE_CLASS)
+            self._rows = []
+        words = "" if not stale else f"▲ {span_of_time(age)} old" if math.isfinite(age) else "no data yet"
+        if words != (self.border_subtitle or ""):
+            self.border_subtitle = words
+
+    def render_line(self, y: int) -> Strip:
+        """Return one painted line."""
+        width = self.size.width
+        styles = self._styles or self._make_styles()
+        row = self._rows[y] if y < len(self._rows) else []
+        return Strip([Segment(text, styles[tone]) for text, tone in fit(row, width)], width)
+
+    def _make_styles(self) -> dict[Tone, Style]:
+        """Return the styles on this widget's ground, all of them the stale one where its data is old."""
+        ground = Style(bgcolor=self.background_colors[1].rich_color)
+        old = self.has_class(_STALE_CLASS)
+        self._styles = {tone: ground + STYLES[Tone.STALE if old else tone] for tone in Tone}
+        return self._styles
+
+    def notify_style_update(self) -> None:
+        """Forget the styles when the style sheet, a class or the theme has changed."""
+        super().notify_style_update()
+        self._styles = {}
+
+    def on_resize(self, _event: events.Resize) -> None:
+        """Draw the last frame anew for the new size."""
+        self._rows = []
+        if self._frame is not None:
+            self.show(self._frame)

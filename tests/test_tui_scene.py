@@ -1,0 +1,118 @@
+"""The map from above."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from canned_flight import canned_run
+from hypothesis import given
+from hypothesis import strategies as st
+
+from groundstation.tui import scene
+from groundstation.tui.canvas import Canvas
+from groundstation.tui.theme import Tone
+from sim.scenario import Box, Cylinder, Sphere
+
+MISSION = canned_run().mission
+metres = st.floats(-500.0, 500.0)
+
+
+def tones(canvas: Canvas) -> set[Tone]:
+    return {tone for row in canvas.to_rows() for text, tone in row if text.strip()}
+
+
+@given(
+    points=st.lists(st.tuples(metres, metres), max_size=4),
+    width=st.integers(20, 400),
+    height=st.integers(20, 240),
+)
+def test_the_view_shows_the_start_and_all_points(points, width, height):
+    view = scene.framing(None, points, width, height)
+    assert view.holds([(0.0, 0.0), *points])
+
+
+@given(st.integers(60, 400), st.integers(40, 240))
+def test_the_view_shows_the_whole_mission(width, height):
+    view = scene.framing(MISSION, [], width, height)
+    assert view.holds([(point[0], point[1]) for point in MISSION.route])
+    assert view.holds([(obstacle.center[0], obstacle.center[1]) for obstacle in MISSION.obstacle])
+    assert view.holds([MISSION.target.position[:2]])
+
+
+def test_north_is_up_and_east_is_right():
+    view = scene.framing(None, [], 100, 100)
+    assert float(view.x(1.0)) > float(view.x(0.0))
+    assert float(view.y(1.0)) < float(view.y(0.0))
+
+
+def test_both_axes_have_one_scale():
+    view = scene.framing(MISSION, [], 200, 100)
+    assert float(view.x(1.0) - view.x(0.0)) == pytest.approx(float(view.y(0.0) - view.y(1.0)))
+
+
+@pytest.mark.parametrize(
+    ("obstacle", "reaches", "above"),
+    [
+        (Sphere(name="s", center=(0, 0, 2), radius=0.5), 2.9, 3.1),
+        (Cylinder(name="c", center=(0, 0, 2), radius=0.5, height=4), 4.4, 4.6),
+        (Box(name="b", center=(0, 0, 1.5), size=(1, 1, 3)), 3.4, 3.6),
+    ],
+)
+def test_an_obstacle_is_beside_the_vehicle_only_at_its_altitude(obstacle, reaches, above):
+    assert scene.beside(obstacle, reaches)
+    assert not scene.beside(obstacle, above)
+
+
+def test_obstacles_beside_the_vehicle_are_drawn_solid_others_as_outlines():
+    view = scene.framing(MISSION, [], 160, 100)
+    low, high = Canvas(80, 25), Canvas(80, 25)
+    scene.draw_world(low, view, MISSION, 2.0)
+    scene.draw_world(high, view, MISSION, 20.0)
+    assert Tone.BESIDE in tones(low)
+    assert Tone.BESIDE not in tones(high)
+    assert Tone.OBSTACLE in tones(high)
+    assert {Tone.TARGET, Tone.ROUTE} <= tones(high)
+
+
+@pytest.mark.parametrize(
+    ("yaw", "axis", "side"), [(0.0, 0, 1), (math.pi, 0, -1), (math.pi / 2, 1, -1), (-math.pi / 2, 1, 1)]
+)
+def test_the_arrowhead_points_where_the_vehicle_heads(yaw, axis, side):
+    view = scene.View(0.0, 0.0, 0.1, 120, 120)
+    canvas = Canvas(60, 30)
+    scene.draw_vehicle(canvas, view, 0.0, 0.0, yaw)
+    rows, columns = np.nonzero(canvas._dots)
+    reach = side * ((columns, rows)[axis] - 59.5)
+    assert reach.max() > 1.3 * -reach.min()
+    assert tones(canvas) == {Tone.VEHICLE}
+
+
+def test_a_vehicle_that_is_nowhere_is_not_drawn():
+    view = scene.framing(None, [], 80, 80)
+    canvas = Canvas(40, 20)
+    scene.draw_vehicle(canvas, view, math.nan, 0.0, 0.0)
+    scene.draw_hand(canvas, view, (0.0, math.nan), (1.0, 1.0), 1.5, taut=False)
+    scene.draw_trail(canvas, view, np.empty((0, 2)))
+    assert tones(canvas) == set()
+
+
+def test_the_leash_is_drawn_taut_as_a_warning():
+    view = scene.framing(None, [], 80, 80)
+    slack, taut = Canvas(40, 20), Canvas(40, 20)
+    scene.draw_hand(slack, view, (0.0, 0.0), (1.0, 0.0), 1.5, taut=False)
+    scene.draw_hand(taut, view, (0.0, 0.0), (1.5, 0.0), 1.5, taut=True)
+    assert Tone.HAND in tones(slack)
+    assert Tone.WARN not in tones(slack)
+    assert tones(taut) == {Tone.WARN}
+
+
+def test_the_scale_is_as_long_as_it_says():
+    view = scene.View(0.0, 0.0, 0.05, 160, 80)
+    canvas = Canvas(80, 20)
+    scene.draw_legend(canvas, view)
+    line = "".join(text for text, _ in canvas.to_rows()[-1])
+    ruler = line.strip().partition("┤")[0] + "┤"
+    metres_said = float(line.partition("┤")[2].split()[0])
+    assert len(ruler) * 2 * view.scale == pytest.approx(metres_said, abs=2 * view.scale)

@@ -17,7 +17,10 @@ def main(*, short: bool) -> list[str]:
     for _ in range(3 if short else 10):
         before = resource.getrusage(resource.RUSAGE_CHILDREN)
         subprocess.run(
-            [sys.executable, "-m", "groundstation.cli", "--help"], stdout=subprocess.DEVNULL, cwd=ROOT, check=True
+            [sys.executable, "-m", "groundstation.cli", "--help"],
+            stdout=subprocess.DEVNULL,
+            cwd=ROOT,
+            check=True,
         )
         after = resource.getrusage(resource.RUSAGE_CHILDREN)
         found.append(after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime)

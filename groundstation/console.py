@@ -18,6 +18,7 @@ from groundstation.messages import (
     DEVICE_REPORT,
     EVENT,
     HANDLE,
+    MISSION_PROGRESS,
     PILOT_STATE,
     SERVO_REPORT,
     SETPOINT,
@@ -29,6 +30,7 @@ from groundstation.messages import (
     DeviceReport,
     Event,
     Handle,
+    MissionProgress,
     PilotState,
     ServoReport,
     Setpoint,
@@ -57,6 +59,7 @@ class Snapshot:
     status: VehicleStatus | None
     servo: ServoReport | None
     device: DeviceReport | None
+    progress: MissionProgress | None
     events: tuple[Event, ...]
     answers: tuple[CommandAnswer, ...]
 
@@ -82,6 +85,7 @@ class Console:
         self._status = bus.subscriber(VEHICLE_STATUS, depth=1)
         self._servo = bus.subscriber(SERVO_REPORT, depth=1)
         self._device = bus.subscriber(DEVICE_REPORT, depth=1)
+        self._progress = bus.subscriber(MISSION_PROGRESS, depth=1)
         self._answers = bus.subscriber(COMMAND_ANSWER)
         self._event_stream = bus.subscriber(EVENT)
         self._events: deque[Event] = deque(maxlen=_EVENTS_KEPT)
@@ -98,6 +102,7 @@ class Console:
             status=self._status.newest(),
             servo=self._servo.newest(),
             device=self._device.newest(),
+            progress=self._progress.newest(),
             events=tuple(self._events),
             answers=tuple(self._answers.drain()),
         )

@@ -19,6 +19,7 @@ from groundstation.messages import (
     Event,
     FlightMode,
     Handle,
+    MissionProgress,
     Phase,
     PilotState,
     ServoReport,
@@ -38,7 +39,7 @@ STIFFNESS = 4.0
 GAIN = 1.2
 LAG_S = 0.45
 WIND = (0.25, -0.45, 0.05)
-NOTHING = Snapshot(START, None, None, None, None, None, None, None, (), ())
+NOTHING = Snapshot(START, None, None, None, None, None, None, None, None, (), ())
 
 
 def canned_run(*, simulated: bool = True, settings: Settings | None = None, mission: bool = True) -> Run:
@@ -130,6 +131,10 @@ class CannedFlight:
             device=DeviceReport(
                 t=t - 0.3, name=b"On-screen stick", renders=b"nothing", workspace=0.1, force_limit=10.0,
                 present=1, homed=1,
+            ),
+            progress=MissionProgress(
+                t=t - 0.02, stage=b"on the way" if self.engaged else b"on the ground", leg=int(self.engaged), legs=5,
+                target_distance=8.0, clearance=1.2,
             ),
             events=self._events(t),
             answers=(),

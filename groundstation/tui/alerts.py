@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterator
 
 from groundstation.messages import Phase, Severity
+from groundstation.training.director import Stage
 from groundstation.tui import judge
 from groundstation.tui.acts import armed, in_air
 from groundstation.tui.frame import REPORT_STALE_S, STATUS_STALE_S, Frame
@@ -124,7 +125,9 @@ def _engaged_hint(frame: Frame) -> str:
     stick = "Space lets go of the stick" if frame.stick is not None else "The handle's centre is standstill"
     if pilot is not None and pilot.on_leash:
         return "On the leash: the vehicle does not keep up, the force shows where it is."
-    target = distance_to_target(frame)
+    progress, target = frame.snapshot.progress, distance_to_target(frame)
+    if progress is not None and words(progress.stage) == Stage.RETURNING.value and math.isfinite(target):
+        return f"Engaged. The target is held: mission flown. {stick}, L lands."
     if mission is not None and mission.target is not None and math.isfinite(target):
         return f"Engaged. Target {quantity(target, 'm', 1)} away. {stick}, X releases."
     return f"Engaged. {stick}, X releases, H holds."

@@ -1,7 +1,7 @@
-"""The Textual application: one timer pulls the newest of everything and paints, one keeps the stick alive.
+"""The Textual application: a timer pulls the newest of everything and paints, a thread keeps the stick alive.
 
 Nothing here flies: it shows what is on the bus and sends the operator's commands. The stick's deflection goes
-out at a steady rate, so that a screen that hangs is a stick gone silent, which uncouples the hand.
+out at a steady rate while the screen turns; a screen that hangs is a stick gone silent, which uncouples the hand.
 """
 
 from __future__ import annotations
@@ -21,17 +21,17 @@ from groundstation.bus import Bus, run_folder
 from groundstation.console import Console, Snapshot
 from groundstation.messages import CommandKind, FlightMode, Severity
 from groundstation.run import Run
+from groundstation.training.follower import MissionFollower
 from groundstation.tui.acts import ACTS, BY_NAME, Act, Ask, coupled, in_air
 from groundstation.tui.frame import Frame, Reader, Supervisor, workspace
 from groundstation.tui.hand import Hand, StickSender
+from groundstation.tui.keepalive import Keepalive
 from groundstation.tui.notes import Answers
 from groundstation.tui.screens.dialog import Confirm, Help
 from groundstation.tui.screens.flight import FlightScreen
 from groundstation.tui.theme import THEME
 from groundstation.tui.track import History, Track
 
-# The stick counts as gone after 0.2 s; a busy screen may miss several of these.
-STICK_HZ = 50.0
 _POLL_S = 0.1
 
 
@@ -43,6 +43,7 @@ class FlightApp(App[int]):
         console: The operator's side of the bus.
         supervisor: Says how the other processes are.
         stick: Takes the on-screen stick's deflection, or None where another device is in use.
+        follower: Follows the mission, if there is one.
         clock: Monotonic seconds, the bus's clock.
     """
 
@@ -59,6 +60,8 @@ class FlightApp(App[int]):
         console: Reader,
         supervisor: Supervisor,
         stick: StickSender | None,
+        *,
+        follower: MissionFollower | None = None,
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
         super().__init__()
@@ -72,6 +75,8 @@ class FlightApp(App[int]):
         self._snapshot = console.snapshot()
         self._started = self._snapshot.t
         self._next_poll = 0.0
+        self._keepalive = Keepalive(self._send_stick, clock)
+        self._follower = follower
         self._flight = FlightScreen(self.hand if stick is not None else None)
 
     def get_default_screen(self) -> Screen[None]:
@@ -87,11 +92,14 @@ class FlightApp(App[int]):
             loop.add_signal_handler(number, self._end, 128 + number)
         self.set_interval(1.0 / self._flight_run.settings.rates.screen, self.pull)
         if self._stick is not None:
-            self.set_interval(1.0 / STICK_HZ, self._send_stick)
+            self._keepalive.start()
 
     def pull(self) -> None:
         """Take the newest of everything and show it."""
+        self._keepalive.turned()
         snapshot = self._snapshot = self._reader.snapshot()
+        if self._follower is not None:
+            self._follower.look(snapshot)
         if snapshot.t >= self._next_poll:
             self._next_poll = snapshot.t + _POLL_S
             self._supervisor.poll()
@@ -122,6 +130,10 @@ class FlightApp(App[int]):
             yaw_range = self._flight_run.settings.mapping.yaw_range
             position, yaw = self.hand.deflection(workspace(self._snapshot), yaw_range)
             self._stick.send(position, yaw, 0, self._clock())
+
+    def on_unmount(self) -> None:
+        """The stick ends with the screen."""
+        self._keepalive.stop()
 
     def on_app_blur(self) -> None:
         """The operator looks elsewhere: let go of the stick."""
@@ -204,9 +216,15 @@ class FlightApp(App[int]):
         yield SystemCommand("Quit (q)", "Asks first while the vehicle is in the air.", self.action_quit)
 
 
-def run_screen(run: Run, console: Reader, supervisor: Supervisor, stick: StickSender | None) -> int:
+def run_screen(
+    run: Run,
+    console: Reader,
+    supervisor: Supervisor,
+    stick: StickSender | None,
+    follower: MissionFollower | None = None,
+) -> int:
     """Show the screen until the operator leaves; return the exit code."""
-    app = FlightApp(run, console, supervisor, stick)
+    app = FlightApp(run, console, supervisor, stick, follower=follower)
     code = app.run()
     return (app.return_code or 0) if code is None else code
 
@@ -219,7 +237,8 @@ def fly_on_screen(run: Run, bus: Bus, supervisor: Supervisor) -> int:
     # A device whose socket lies in the run's own folder is moved by this program and no other.
     stick = Sender(str(address)) if address.parent == run_folder(run.run_id) else None
     try:
-        return run_screen(run, Console(bus, "screen"), supervisor, stick)
+        follower = MissionFollower(run.mission, bus) if run.mission else None
+        return run_screen(run, Console(bus, "screen"), supervisor, stick, follower)
     finally:
         if stick is not None:
             stick.close()

@@ -241,7 +241,8 @@ class Link:
 def body(run: Run, bus: Bus, lifeline: Lifeline) -> None:
     """Run the link until the lifeline ends."""
     notes: Notes = queue.SimpleQueue()
-    mavsdk.log_subscribe(lambda level, text, _file, _line: _note_log(notes, int(level), text))
+    # It complains of a connection that is about to come; its lines count from when that is there.
+    mavsdk.log_subscribe(lambda _level, _text, _file, _line: True)
     try:
         transport = open_transport(parse_url(run.url))
     except (UrlError, TransportError) as error:
@@ -251,6 +252,7 @@ def body(run: Run, bus: Bus, lifeline: Lifeline) -> None:
     pump = Pump(transport, gate, tlog, time.monotonic)
     mav = Mavsdk(Configuration.create_manual(_SYSTEM_ID, _COMPONENT_ID, always_send_heartbeats=True))
     pump.start(mav)
+    mavsdk.log_subscribe(lambda level, text, _file, _line: _note_log(notes, int(level), text))
     link = Link(run, bus, mav, pump, gate, notes=notes)
     try:
         while lifeline.holds():

@@ -81,8 +81,9 @@ class Pump:
 
     def start(self, mavsdk: Mavsdk) -> None:
         """Connect MAVSDK and begin."""
-        mavsdk.add_any_connection("raw://")
+        # In this order no heartbeat is sent into nothing.
         mavsdk.subscribe_raw_bytes_to_be_sent(self._send)
+        mavsdk.add_any_connection("raw://")
         self._thread = threading.Thread(target=self._receive_all, args=(mavsdk,), name="pump", daemon=True)
         self._thread.start()
 

@@ -74,8 +74,7 @@ def _battery_and_clock(frame: Frame, width: int) -> Row:
     status, device = frame.snapshot.status, frame.snapshot.device
     row: Row = []
     if width >= _WIDE:
-        mission = frame.run.mission
-        row.append((f"{mission.name if mission else 'free flight'}   ", Tone.MUTED))
+        row.append((f"{_mission(frame)}   ", Tone.MUTED))
     if device is not None:
         old = frame.age(device) > REPORT_STALE_S
         tone = Tone.STALE if old else Tone.TEXT if device.present else Tone.FAULT
@@ -89,6 +88,18 @@ def _battery_and_clock(frame: Frame, width: int) -> Row:
         row.append((f"{MARKS[severity]}BAT {charge}{volts}", tone))
     row.append((f"  {clock(frame.now - frame.started)} ", Tone.MUTED))
     return row
+
+
+def _mission(frame: Frame) -> str:
+    """Return the mission's name and how far it is."""
+    mission, progress = frame.run.mission, frame.snapshot.progress
+    if mission is None:
+        return "free flight"
+    if progress is None or not progress.legs:
+        return mission.name
+    point = min(progress.leg + 1, progress.legs)
+    touched = f", {progress.collisions} collisions" if progress.collisions else ""
+    return f"{mission.name}: {words(progress.stage)}, point {point}/{progress.legs}{touched}"
 
 
 def _figure(label: str, value: str, severity: Severity) -> Row:

@@ -1,0 +1,34 @@
+"""Make all pictures of README and docs: the screen from a canned flight, the viewer from a real one.
+
+`make docs-pictures`. The viewer's picture needs a Vulkan driver (Debian: mesa-vulkan-drivers, libvulkan1).
+"""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+FLY = ("-m", "groundstation.cli", "--sim", "--headless", "--mission", "paper", "--json")
+
+
+def main() -> None:
+    """Make them."""
+    subprocess.run([sys.executable, HERE / "screen.py"], check=True)
+    with tempfile.TemporaryDirectory() as logs:
+        flown = subprocess.run(
+            [sys.executable, *FLY, "--logs", logs],
+            cwd=HERE.parents[1],
+            stdout=subprocess.PIPE,
+            text=True,
+            check=True,
+        )
+        recording = json.loads(flown.stdout)["logs"]["rrd"]
+        subprocess.run([sys.executable, HERE / "viewer.py", recording], check=True)
+
+
+if __name__ == "__main__":
+    main()

@@ -19,10 +19,11 @@ import time
 from pathlib import Path
 
 from drivers.stick import StickSender
-from groundstation.bus import Bus, run_folder
+from groundstation.bus import Bus
 from groundstation.console import Console, Snapshot
 from groundstation.messages import CommandKind, Phase
 from groundstation.processes import free_port
+from groundstation.run_folder import run_folder
 
 ROOT = Path(__file__).resolve().parents[1]
 SETPOINT_ID = 84
@@ -137,6 +138,7 @@ class Program:
         )  # fmt: skip
         os.close(terminal)
         self._controller = controller
+        self._closed = False
         self._reader = threading.Thread(target=self._drain, daemon=True)
         self.screen = bytearray()
         self._reader.start()
@@ -198,6 +200,9 @@ class Program:
                 self.process.kill()
                 self.process.wait()
         self.bus.close()
+        self._closed = True
+        self._reader.join()
+        os.close(self._controller)
 
     def _join(self) -> Bus:
         """Find the program's bus by the run folder that carries its process id."""
@@ -210,10 +215,13 @@ class Program:
         raise SystemExit("the program did not start:\n" + self.screen.decode(errors="replace")[-2000:])
 
     def _drain(self) -> None:
-        with contextlib.suppress(OSError):
-            while data := os.read(self._controller, 65536):
-                self.screen += data
-                del self.screen[:-100_000]
+        while not self._closed:
+            try:
+                self.screen += os.read(self._controller, 65536)
+            except OSError:
+                # Nobody has the terminal open now; somebody may again.
+                time.sleep(0.02)
+            del self.screen[:-100_000]
 
 
 def _resize(terminal: int, columns: int, rows: int) -> None:

@@ -9,12 +9,8 @@ from __future__ import annotations
 import ctypes
 import importlib
 import os
-import secrets
-import shutil
-import tempfile
 import time
 from collections.abc import Iterator
-from pathlib import Path
 from typing import Any, Generic, TypeVar
 
 from groundstation.messages import (
@@ -28,52 +24,28 @@ from groundstation.messages import (
     Topic,
     fit,
 )
+from groundstation.run_folder import PREFIX, run_folder
 
 R = TypeVar("R", bound=Record)
 
 # iceoryx2 is a compiled module without type information.
 iox2: Any = importlib.import_module("iceoryx2")
 
-_PREFIX = "groundstation-"
 _PARTIES = 16
-_SHARED_MEMORY = Path("/dev/shm")  # noqa: S108 - where Linux keeps POSIX shared memory; elsewhere it is absent
-
-
-def new_run_id() -> str:
-    """Return a name for a run that no other has: the supervisor's process id and something random."""
-    return f"{os.getpid()}-{secrets.token_hex(3)}"
-
-
-def run_folder(run_id: str) -> Path:
-    """Return the folder of a run's files: the bus's and the run file."""
-    return Path(tempfile.gettempdir()) / f"{_PREFIX}{run_id}"
-
-
-def sweep(run_id: str) -> None:
-    """Remove all that a run's bus left in shared memory and on disk. Only when its processes are gone."""
-    for segment in _SHARED_MEMORY.glob(f"{_PREFIX}{run_id}_*"):
-        segment.unlink(missing_ok=True)
-    shutil.rmtree(run_folder(run_id), ignore_errors=True)
-
-
-def sweep_dead_runs() -> None:
-    """Remove what runs left behind whose every process has died, as after SIGKILL of all of them."""
-    for folder in Path(tempfile.gettempdir()).glob(f"{_PREFIX}*-*"):
-        run_id = folder.name.removeprefix(_PREFIX)
-        supervisor = run_id.partition("-")[0]
-        if supervisor.isdigit() and not Path(f"/proc/{supervisor}").exists() and Path("/proc").exists():
-            sweep(run_id)
 
 
 class Publisher(Generic[R]):
     """Sends records of one topic."""
 
-    def __init__(self, port: Any) -> None:
+    def __init__(self, port: Any, notifier: Any) -> None:
         self._send = port.send_copy
+        self._notify = notifier.notify if notifier else None
 
     def send(self, record: R) -> None:
-        """Copy a record to all subscribers."""
+        """Copy a record to all subscribers, and wake who waits for it."""
         self._send(record)
+        if self._notify:
+            self._notify()
 
 
 class Subscriber(Generic[R]):
@@ -101,6 +73,17 @@ class Subscriber(Generic[R]):
         return self._newest
 
 
+class Waker:
+    """Waits for the next record of a topic, or for a while."""
+
+    def __init__(self, listener: Any) -> None:
+        self._wait = listener.timed_wait
+
+    def wait(self, seconds: float) -> None:
+        """Return when a record was sent since the last call, or after `seconds`."""
+        self._wait(iox2.Duration.from_secs_f64(seconds))
+
+
 class Bus:
     """One process's place on the bus of a run.
 
@@ -112,7 +95,7 @@ class Bus:
     def __init__(self, run_id: str, role: str) -> None:
         iox2.set_log_level(iox2.LogLevel.Fatal)
         config = iox2.config.default()
-        config.global_cfg.prefix = iox2.FileName.new(f"{_PREFIX}{run_id}_")
+        config.global_cfg.prefix = iox2.FileName.new(f"{PREFIX}{run_id}_")
         config.global_cfg.root_path = iox2.Path.new(str(run_folder(run_id)))
         self._role = role
         self._node: Any = (
@@ -129,8 +112,15 @@ class Bus:
     def publisher(self, topic: Topic[R]) -> Publisher[R]:
         """Return a sender for a topic."""
         port = self._service(topic).publisher_builder().create()
-        self._ports.append(port)
-        return Publisher(port)
+        notifier = self._wakes(topic).notifier_builder().create() if topic.wakes else None
+        self._ports += (port, notifier)
+        return Publisher(port, notifier)
+
+    def waker(self, topic: Topic[R]) -> Waker:
+        """Return what waits for a topic that wakes."""
+        listener = self._wakes(topic).listener_builder().create()
+        self._ports.append(listener)
+        return Waker(listener)
 
     def subscriber(self, topic: Topic[R], depth: int | None = None) -> Subscriber[R]:
         """Return a receiver for a topic that keeps up to `depth` unread records; 1 for the newest only."""
@@ -154,6 +144,9 @@ class Bus:
         self._ports.clear()
         del self._events, self._heartbeats
         self._node = None
+
+    def _wakes(self, topic: Topic[R]) -> Any:
+        return self._node.service_builder(iox2.ServiceName.new(f"{topic.name}_sent")).event().open_or_create()
 
     def _service(self, topic: Topic[R]) -> Any:
         if self._node is None:

@@ -12,6 +12,8 @@ from pathlib import Path
 from groundstation.bus import Bus
 from groundstation.messages import Severity
 from groundstation.run import Run, read_run
+from groundstation.run_folder import Stay, sweep
+from groundstation.terminal import give_back
 
 HEARTBEAT_S = 0.1
 
@@ -57,6 +59,7 @@ def run_child(role: str, body: Callable[[Run, Bus, Lifeline], None]) -> None:
         body: Its work; returns when the lifeline no longer holds.
     """
     run = read_run(Path(sys.argv[1]))
+    stay = Stay(run.run_id)
     bus = Bus(run.run_id, role)
     try:
         body(run, bus, Lifeline(bus))
@@ -66,3 +69,7 @@ def run_child(role: str, body: Callable[[Run, Bus, Lifeline], None]) -> None:
         raise
     finally:
         bus.close()
+        if stay.end():
+            # The supervisor, which else is the last, was killed.
+            sweep(run.run_id)
+            give_back(run.terminal)

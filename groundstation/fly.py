@@ -12,11 +12,12 @@ from typing import NoReturn
 
 import msgspec
 
-from groundstation.bus import new_run_id, run_folder, sweep_dead_runs
 from groundstation.config import load_settings
 from groundstation.errors import InputError
 from groundstation.processes import free_port, running
 from groundstation.run import Run
+from groundstation.run_folder import new_run_id, run_folder, sweep_dead_runs
+from groundstation.terminal import terminal_path
 from groundstation.training.mission import Mission, find_mission, load_mission
 from groundstation.vehicle.transport import parse_url
 
@@ -75,6 +76,7 @@ def plan(asked: argparse.Namespace) -> Run:
         settings=settings,
         log=str(_log_stem(asked.logs, now, mission)),
         viewer_url=_viewer(asked),
+        terminal="" if asked.headless else terminal_path(),
         started=now.isoformat(timespec="milliseconds"),
     )
 

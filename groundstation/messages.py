@@ -387,16 +387,18 @@ class Topic(Generic[R]):
     Attributes:
         depth: Records a subscriber may fall behind before it loses the oldest.
         history: Records a subscriber that comes late still gets.
+        wakes: Sending one wakes who waits for it (`Bus.waker`), for what must not wait for a turn of a loop.
     """
 
     name: str
     record: type[R]
     depth: int = 64
     history: int = 1
+    wakes: bool = False
 
 
 HANDLE = Topic("handle", Handle, depth=4096)
-SETPOINT = Topic("setpoint", Setpoint, depth=256)
+SETPOINT = Topic("setpoint", Setpoint, depth=256, wakes=True)
 PILOT_STATE = Topic("pilot_state", PilotState, depth=256)
 VEHICLE_STATE = Topic("vehicle_state", VehicleState, depth=1024)
 VEHICLE_STATUS = Topic("vehicle_status", VehicleStatus, depth=256)

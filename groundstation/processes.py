@@ -18,9 +18,10 @@ from dataclasses import dataclass
 from enum import StrEnum
 from pathlib import Path
 
-from groundstation.bus import Bus, run_folder, sweep
+from groundstation.bus import Bus
 from groundstation.messages import COMMAND, HEARTBEAT, Command, CommandKind, Severity
 from groundstation.run import Run, write_run
+from groundstation.run_folder import Stay, run_folder, sweep
 
 SILENT_S = 1.0
 _STARTING_S = 15.0
@@ -189,6 +190,7 @@ def free_port() -> int:
 def running(run: Run, role: str, sim_options: tuple[str, ...] = ()) -> Generator[tuple[Bus, Supervisor]]:
     """Run a run: yield the bus and the supervisor, and leave nothing behind however the block ends."""
     run_file = write_run(run)
+    stay = Stay(run.run_id)
     bus = Bus(run.run_id, role)
     supervisor = Supervisor(run, table(run, run_file, sim_options), bus)
     try:
@@ -196,6 +198,7 @@ def running(run: Run, role: str, sim_options: tuple[str, ...] = ()) -> Generator
     finally:
         supervisor.stop()
         bus.close()
+        stay.end()
         sweep(run.run_id)
 
 

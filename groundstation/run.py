@@ -7,8 +7,8 @@ from pathlib import Path
 import msgspec
 from msgspec import Struct
 
-from groundstation.bus import run_folder
 from groundstation.config import Settings
+from groundstation.run_folder import run_folder
 from groundstation.training.mission import Mission
 
 RUN_FILE = "run.json"
@@ -27,6 +27,7 @@ class Run(Struct, frozen=True):
         settings: All settings.
         log: Path of the recording without suffix; `.rrd` and `.tlog` are beside each other.
         viewer_url: A live Rerun viewer to stream to, or "".
+        terminal: The terminal the screen is on, or "": who is left gives it back when the screen is killed.
         started: Wall-clock time of the start, ISO 8601.
     """
 
@@ -40,6 +41,7 @@ class Run(Struct, frozen=True):
     log: str
     viewer_url: str
     started: str
+    terminal: str = ""
 
     @property
     def recording(self) -> Path:

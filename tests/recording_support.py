@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from groundstation.bus import Bus, new_run_id, sweep
+from groundstation.bus import Bus
 from groundstation.config import Settings
 from groundstation.messages import (
     EVENT,
@@ -28,6 +28,7 @@ from groundstation.messages import (
     VehicleStatus,
 )
 from groundstation.run import Run, write_run
+from groundstation.run_folder import new_run_id, sweep
 from groundstation.training.mission import find_mission, load_mission
 
 PATIENCE_S = 60.0

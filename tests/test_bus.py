@@ -1,6 +1,5 @@
 """The bus between real processes: newest, drained, late, overflowing, killed."""
 
-import os
 import signal
 import subprocess
 import sys
@@ -9,9 +8,20 @@ from pathlib import Path
 
 import pytest
 
-from groundstation import bus as bus_module
-from groundstation.bus import Bus, new_run_id, sweep, sweep_dead_runs
-from groundstation.messages import EVENT, HANDLE, VEHICLE_STATE, Event, Handle, Severity, VehicleState, fit
+from groundstation.bus import Bus
+from groundstation.messages import (
+    EVENT,
+    HANDLE,
+    SETPOINT,
+    VEHICLE_STATE,
+    Event,
+    Handle,
+    Setpoint,
+    Severity,
+    VehicleState,
+    fit,
+)
+from groundstation.run_folder import new_run_id, run_folder, sweep
 
 
 @pytest.fixture
@@ -31,7 +41,7 @@ def bus(run_id):
 def left_behind(run_id: str) -> list[Path]:
     return [
         *Path("/dev/shm").glob(f"groundstation-{run_id}_*"),
-        *Path(bus_module.run_folder(run_id)).glob("*"),
+        *Path(run_folder(run_id)).glob("*"),
     ]
 
 
@@ -116,24 +126,31 @@ def test_a_killed_publisher_leaves_nothing_behind(run_id):
     assert not left_behind(run_id)
 
 
-def test_what_a_dead_program_left_is_swept_by_the_next(tmp_path, monkeypatch):
-    monkeypatch.setattr(bus_module.tempfile, "gettempdir", lambda: str(tmp_path))
-    finished = subprocess.Popen([sys.executable, "-c", ""])
-    finished.wait()
-    dead, alive = (
-        tmp_path / f"groundstation-{finished.pid}-abc",
-        tmp_path / f"groundstation-{os.getpid()}-abc",
-    )
-    dead.mkdir()
-    alive.mkdir()
-    sweep_dead_runs()
-    assert not dead.exists()
-    assert alive.exists()
-
-
 def test_events_carry_who_and_how_bad(bus):
     subscriber = bus.subscriber(EVENT)
     bus.event(Severity.ALARM, "link lost")
     (event,) = subscriber.drain()
     assert isinstance(event, Event)
     assert (event.source, event.severity, event.text) == (b"test", Severity.ALARM, b"link lost")
+
+
+def test_who_waits_for_a_setpoint_is_woken_by_it(bus):
+    import threading
+
+    waker, subscriber, publisher = bus.waker(SETPOINT), bus.subscriber(SETPOINT), bus.publisher(SETPOINT)
+    started = time.monotonic()
+    threading.Timer(0.2, publisher.send, (Setpoint(number=7),)).start()
+    waker.wait(20.0)
+    assert time.monotonic() - started < 10.0
+    assert [setpoint.number for setpoint in subscriber.drain()] == [7]
+
+
+def test_waiting_ends_when_nothing_comes(bus):
+    bus.waker(SETPOINT).wait(0.01)
+
+
+def test_a_setpoint_nobody_waits_for_is_sent_all_the_same(bus):
+    subscriber, publisher = bus.subscriber(SETPOINT), bus.publisher(SETPOINT)
+    for number in range(2000):
+        publisher.send(Setpoint(number=number))
+    assert [setpoint.number for setpoint in subscriber.drain()][-1] == 1999

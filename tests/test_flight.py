@@ -6,11 +6,16 @@ The vehicle's side is looked at where it counts: at its socket, through a relay.
 import json
 import math
 import os
+import pty
+import select
 import signal
+import socket
 import subprocess
 import sys
 import tempfile
+import threading
 import time
+import tty
 from pathlib import Path
 
 import pytest
@@ -120,15 +125,17 @@ def holds(tap) -> bool:
     return bool(modes) and modes[-1] == (PX4_AUTO, PX4_LOITER) and speed(tap) < 0.2
 
 
-def test_a_mission_is_flown_summed_up_and_recorded(tmp_path):
-    done = headless("--sim", "--headless", "--mission", "hover", "--json", "--logs", str(tmp_path))
+@pytest.mark.parametrize(("mission", "path_m", "force_n"), [("hover", 2.0, 0.0), ("paper", 12.0, 1.0)])
+def test_a_mission_is_flown_summed_up_and_recorded(tmp_path, mission, path_m, force_n):
+    done = headless("--sim", "--headless", "--mission", mission, "--json", "--logs", str(tmp_path))
     assert done.returncode == 0, done.stderr
     summary = json.loads(done.stdout)
     assert summary["completed"] is True
     assert summary["collisions"] == 0
     assert summary["final_error_m"] <= 0.2
     assert 5 < summary["duration_s"] < 60
-    assert summary["path_m"] > 2
+    assert summary["path_m"] > path_m
+    assert summary["max_force_n"] > force_n
     servo = summary["servo"]
     assert servo["rate_hz"] == pytest.approx(1000)
     assert servo["ticks"] > 5000
@@ -170,12 +177,44 @@ def test_a_killed_process_ends_in_a_vehicle_that_holds_and_is_told(flight, role)
     assert not left_behind(flight.process.pid)
 
 
+@pytest.mark.parametrize("role", ["pilot", "sim"])
+def test_a_headless_flight_that_loses_a_process_ends_with_1_and_says_which(tmp_path, role):
+    mission = tmp_path / "long.toml"
+    mission.write_text(LONG)
+    program = Program("--sim", "--headless", "--mission", str(mission), "--logs", str(tmp_path))
+    children = program.pids()
+    program.until(lambda view: view.status and view.status.armed, 30, "armed")
+    os.kill(program.pids()[role], signal.SIGKILL)
+    program.process.wait(30)
+    program.close()
+    assert program.process.returncode == 1
+    assert f"The {role} process has died (killed by SIGKILL)".encode() in program.screen
+    assert not any(Path(f"/proc/{pid}").exists() for pid in children.values())
+    assert not left_behind(program.process.pid)
+
+
+def test_a_headless_flight_that_is_interrupted_cleans_up(tmp_path):
+    mission = tmp_path / "long.toml"
+    mission.write_text(LONG)
+    program = Program("--sim", "--headless", "--mission", str(mission), "--logs", str(tmp_path))
+    program.until(lambda view: view.status and view.status.connected, 30, "connected")
+    children = program.pids()
+    program.process.send_signal(signal.SIGINT)
+    assert program.process.wait(30) == 130
+    program.close()
+    assert b"Traceback" not in program.screen
+    assert not any(Path(f"/proc/{pid}").exists() for pid in children.values())
+    assert not left_behind(program.process.pid)
+
+
 def test_a_killed_screen_takes_all_with_it_and_the_vehicle_holds(flight):
     pids = flight.pids()
     os.kill(flight.process.pid, signal.SIGKILL)
     flight.process.wait(10)
     until(lambda: holds(flight.tap), 6, "the vehicle holds")
     until(lambda: not any(Path(f"/proc/{pid}").exists() for pid in pids.values()), 20, "the others end")
+    assert not left_behind(flight.process.pid)
+    until(lambda: b"\x1b[?1049l" in flight.screen, 5, "the terminal is given back")
 
 
 def test_a_frozen_pilot_lets_no_old_setpoint_out(flight):
@@ -247,3 +286,58 @@ def test_nothing_is_left_behind_after_a_good_end(tmp_path):
     program.close()
     assert not any(Path(f"/proc/{pid}").exists() for pid in children.values())
     assert not left_behind(program.process.pid)
+
+
+def flown_over(url, tmp_path) -> dict:
+    done = headless(
+        "--connect", url, "--headless", "--confirm-real", "--mission", "hover", "--json", "--logs", str(tmp_path)
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    return json.loads(done.stdout)
+
+
+def test_a_vehicle_behind_tcp_is_flown_the_same(tmp_path):
+    with socket.create_server(("127.0.0.1", 0)) as probe:
+        port = probe.getsockname()[1]
+    command = [sys.executable, "-m", "sim", "--connect", f"tcpin://127.0.0.1:{port}", "--quiet"]
+    simulated = subprocess.Popen(command, cwd=ROOT)
+    try:
+        until(lambda: listens(port), 10, "the vehicle listens")
+        assert flown_over(f"tcpout://127.0.0.1:{port}", tmp_path)["simulated"] is False
+    finally:
+        simulated.terminate()
+        simulated.wait(10)
+
+
+def listens(port) -> bool:
+    return f":{port:04X} 00000000:0000 0A" in Path("/proc/net/tcp").read_text()
+
+
+def test_a_vehicle_behind_a_serial_port_is_flown_the_same(tmp_path):
+    controller, device = pty.openpty()
+    air = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+    air.bind(("127.0.0.1", 0))
+    over = threading.Event()
+
+    def radio() -> None:
+        vehicle_address = None
+        while not over.is_set():
+            for ready in select.select([controller, air], [], [], 0.1)[0]:
+                if ready is air:
+                    data, vehicle_address = air.recvfrom(65536)
+                    os.write(controller, data)
+                elif vehicle_address:
+                    air.sendto(os.read(controller, 4096), vehicle_address)
+
+    tty.setraw(device)
+    thread = threading.Thread(target=radio)
+    thread.start()
+    try:
+        with vehicle(air.getsockname()[1]):
+            assert flown_over(f"serial://{os.ttyname(device)}:57600", tmp_path)["completed"] is True
+    finally:
+        over.set()
+        thread.join()
+        air.close()
+        os.close(controller)
+        os.close(device)

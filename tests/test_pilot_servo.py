@@ -13,7 +13,7 @@ import pytest
 
 from drivers.stick import StickSender
 from drivers.virtual import VirtualHandle
-from groundstation.bus import Bus, new_run_id, sweep
+from groundstation.bus import Bus
 from groundstation.config import Settings
 from groundstation.messages import (
     COMMAND,
@@ -39,6 +39,7 @@ from groundstation.messages import (
 from groundstation.pilot.lateness import Lateness
 from groundstation.pilot.servo import Servo
 from groundstation.run import Run, write_run
+from groundstation.run_folder import new_run_id, sweep
 
 DT = 0.001
 

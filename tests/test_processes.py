@@ -8,11 +8,12 @@ from pathlib import Path
 
 import pytest
 
-from groundstation.bus import Bus, new_run_id, run_folder, sweep
+from groundstation.bus import Bus
 from groundstation.config import Settings
 from groundstation.messages import EVENT
 from groundstation.processes import Process, State, Supervisor, free_port, table
 from groundstation.run import Run, read_run, write_run
+from groundstation.run_folder import new_run_id, run_folder, sweep
 
 CHILD = """
 import sys, time

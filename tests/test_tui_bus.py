@@ -10,7 +10,7 @@ import pytest
 from canned_flight import CannedFlight, CannedReader, CannedSupervisor, canned_run
 
 from drivers.stick import StickReceiver, StickSample, StickSender
-from groundstation.bus import Bus, new_run_id, run_folder, sweep
+from groundstation.bus import Bus
 from groundstation.console import Console
 from groundstation.messages import (
     COMMAND,
@@ -25,6 +25,7 @@ from groundstation.messages import (
     CommandKind,
     Severity,
 )
+from groundstation.run_folder import new_run_id, run_folder, sweep
 from groundstation.tui import app as app_module
 from groundstation.tui.app import FlightApp, fly_on_screen
 from groundstation.tui.widgets.instrument import Instrument

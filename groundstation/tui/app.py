@@ -17,10 +17,11 @@ from textual.app import App, SystemCommand
 from textual.binding import Binding, BindingType
 from textual.screen import Screen
 
-from groundstation.bus import Bus, run_folder
+from groundstation.bus import Bus
 from groundstation.console import Console, Snapshot
 from groundstation.messages import CommandKind, FlightMode, Severity
 from groundstation.run import Run
+from groundstation.run_folder import run_folder
 from groundstation.training.follower import MissionFollower
 from groundstation.tui.acts import ACTS, BY_NAME, Act, Ask, coupled, in_air
 from groundstation.tui.frame import Frame, Reader, Supervisor, workspace

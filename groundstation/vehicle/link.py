@@ -44,7 +44,7 @@ from groundstation.vehicle.transport import TransportError, UrlError, open_trans
 ROLE = "link"
 # MAV_COMP_ID_MISSIONPLANNER: the ground station's usual component, with the usual GCS system id.
 _SYSTEM_ID, _COMPONENT_ID = 255, 190
-_TURN_S = 0.0005
+_TURN_S = 0.001
 _STATUS_S = 0.1
 _DISCOVERY_S = 0.05
 _DEFAULT_TAKEOFF_M = 2.0
@@ -70,6 +70,7 @@ class Link:
         self._run, self._bus, self._mav, self._pump, self._gate = run, bus, mav, pump, gate
         self._notes = notes
         self._setpoints = bus.subscriber(SETPOINT, depth=1)
+        self._waker = bus.waker(SETPOINT)
         self._commands = bus.subscriber(COMMAND)
         self._states = bus.publisher(VEHICLE_STATE)
         self._statuses = bus.publisher(VEHICLE_STATUS)
@@ -102,6 +103,10 @@ class Link:
         if now >= self._next_status or self._changed():
             self._next_status = now + _STATUS_S
             self._publish_status(now)
+
+    def wait(self) -> None:
+        """Wait for the next setpoint, or for the time of a turn."""
+        self._waker.wait(_TURN_S)
 
     def leave(self) -> None:
         """End the stream if there is one, and give the vehicle the word to hold before the link goes."""
@@ -257,7 +262,7 @@ def body(run: Run, bus: Bus, lifeline: Lifeline) -> None:
     try:
         while lifeline.holds():
             link.turn()
-            time.sleep(_TURN_S)
+            link.wait()
         link.leave()
     finally:
         pump.stop()

@@ -91,7 +91,7 @@ class HeadlessFlight:
             self.step = _ORDER[_ORDER.index(self.step) + 1]
             self._since, self._next_try, self._refusal = view.t, 0.0, ""
         elif view.t - self._since > self._patience():
-            self._give_up(view.t)
+            self._give_up(view)
         elif self.step in _COMMANDS and view.t >= self._next_try:
             self._next_try = view.t + _RETRY_S
             self._console.command(_COMMANDS[self.step])
@@ -137,12 +137,25 @@ class HeadlessFlight:
     def _patience(self) -> float:
         return self._mission.criteria.time_limit_s + _GRACE_S if self.step is Step.FLY else _STEP_S + 10.0
 
-    def _give_up(self, now: float) -> None:
+    def _give_up(self, view: Snapshot) -> None:
         """Say why, and come down if in the air."""
         why = f" ({self._refusal.rstrip('.')})" if self._refusal else ""
+        if self.step is Step.CONNECT:
+            why = f" ({_missing(view)})"
         self.failure = self.failure or f"{self.step.value} took too long{why}"
         self.step = Step.DISENGAGE if self.step is Step.FLY else Step.DONE
-        self._since, self._next_try = now, 0.0
+        self._since, self._next_try = view.t, 0.0
+
+
+def _missing(view: Snapshot) -> str:
+    """Say what a connection waits for."""
+    if view.status is None or not view.status.heard_t:
+        return "nothing was heard from a vehicle; check that it is on and the URL is its"
+    if not view.status.connected:
+        return "frames come, but no autopilot's heartbeat among them"
+    if not view.status.health & Health.ARMABLE:
+        return "the vehicle says it cannot be armed; see its messages"
+    return "the servo has not started"
 
 
 class Hand:

@@ -105,7 +105,10 @@ def _table(figures: dict[str, object]) -> str:
         ("mission", f"{figures['mission']}: {verdict}"),
         ("time", f"{figures['duration_s']} s"),
         ("path", f"{figures['path_m']} m"),
-        ("position error", f"{figures['rms_error_m']} m RMS, {figures['final_error_m']} m at the target"),
+        (
+            "position error",
+            f"{_metres(figures['rms_error_m'])} RMS, {_metres(figures['final_error_m'])} at the target",
+        ),
         ("largest force", f"{figures['max_force_n']} N"),
         ("collisions", f"{figures['collisions']}"),
         (
@@ -113,10 +116,14 @@ def _table(figures: dict[str, object]) -> str:
             f"{share:.2f} % of ticks at {servo['rate_hz']} Hz, late {servo['late_p50_us']} µs p50, "
             f"{servo['late_p99_us']} µs p99",
         ),
-        ("recording", f"{logs['rrd']}"),
-        ("MAVLink log", f"{logs['tlog']}"),
+        ("recording", logs["rrd"] or "none"),
+        ("MAVLink log", logs["tlog"] or "none"),
     )
     return "\n".join(f"{name:<15} {value}" for name, value in rows)
+
+
+def _metres(length: object) -> str:
+    return "–" if length is None else f"{length} m"
 
 
 def _figures(director: Director, view: Snapshot) -> str:

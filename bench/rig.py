@@ -21,7 +21,7 @@ from pathlib import Path
 from drivers.stick import StickSender
 from groundstation.bus import Bus
 from groundstation.console import Console, Snapshot
-from groundstation.messages import CommandKind, Phase
+from groundstation.messages import CommandKind, FlightMode, Phase
 from groundstation.processes import free_port
 from groundstation.run_folder import run_folder
 
@@ -173,7 +173,7 @@ class Program:
         )
         for kind, condition, what in (
             (CommandKind.ARM, lambda view: view.status.armed, "armed"),
-            (CommandKind.TAKEOFF, lambda view: view.vehicle and view.vehicle.position[2] > 1.6, "in the air"),
+            (CommandKind.TAKEOFF, hovers, "hovering"),
             (CommandKind.ENGAGE, lambda view: view.pilot and view.pilot.phase == Phase.ENGAGED, "engaged"),
         ):
             self.console.command(kind)
@@ -190,6 +190,12 @@ class Program:
                     found[ROLES.get(module, module)] = int(folder.name)
         return found
 
+    def hang_up(self) -> None:
+        """Take the terminal away."""
+        self._closed = True
+        self._reader.join(1.0)
+        os.close(self._controller)
+
     def close(self) -> None:
         """End the program and leave its bus."""
         if self.process.poll() is None:
@@ -200,9 +206,8 @@ class Program:
                 self.process.kill()
                 self.process.wait()
         self.bus.close()
-        self._closed = True
-        self._reader.join()
-        os.close(self._controller)
+        if not self._closed:
+            self.hang_up()
 
     def _join(self) -> Bus:
         """Find the program's bus by the run folder that carries its process id."""
@@ -216,12 +221,25 @@ class Program:
 
     def _drain(self) -> None:
         while not self._closed:
+            if not select.select([self._controller], [], [], 0.1)[0]:
+                continue
             try:
                 self.screen += os.read(self._controller, 65536)
             except OSError:
                 # Nobody has the terminal open now; somebody may again.
                 time.sleep(0.02)
             del self.screen[:-100_000]
+
+
+def hovers(view: Snapshot) -> bool:
+    """Say whether the vehicle has taken off and stands in the air."""
+    return bool(
+        view.status
+        and view.vehicle
+        and view.status.mode == FlightMode.HOLD
+        and view.vehicle.position[2] > 1.0
+        and abs(view.vehicle.velocity[2]) < 0.1
+    )
 
 
 def _resize(terminal: int, columns: int, rows: int) -> None:

@@ -341,3 +341,12 @@ def test_a_vehicle_behind_a_serial_port_is_flown_the_same(tmp_path):
         air.close()
         os.close(controller)
         os.close(device)
+
+
+def test_a_terminal_that_goes_takes_all_with_it_and_the_vehicle_holds(flight):
+    pids = flight.pids()
+    flight.hang_up()
+    flight.process.wait(20)
+    until(lambda: holds(flight.tap), 6, "the vehicle holds")
+    until(lambda: not any(Path(f"/proc/{pid}").exists() for pid in pids.values()), 20, "the others end")
+    assert not left_behind(flight.process.pid)

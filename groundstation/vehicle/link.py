@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 import queue
+import threading
 import time
 from collections import deque
 
@@ -246,8 +247,12 @@ class Link:
 def body(run: Run, bus: Bus, lifeline: Lifeline) -> None:
     """Run the link until the lifeline ends."""
     notes: Notes = queue.SimpleQueue()
-    # It complains of a connection that is about to come; its lines count from when that is there.
-    mavsdk.log_subscribe(lambda _level, _text, _file, _line: True)
+    # It complains of a connection that is about to come; its lines count from when that is there. Subscribing
+    # anew then would free the callback that a thread of MAVSDK's may be in.
+    connected = threading.Event()
+    mavsdk.log_subscribe(
+        lambda level, text, _file, _line: _note_log(notes, int(level), text) if connected.is_set() else True
+    )
     try:
         transport = open_transport(parse_url(run.url))
     except (UrlError, TransportError) as error:
@@ -257,7 +262,7 @@ def body(run: Run, bus: Bus, lifeline: Lifeline) -> None:
     pump = Pump(transport, gate, tlog, time.monotonic)
     mav = Mavsdk(Configuration.create_manual(_SYSTEM_ID, _COMPONENT_ID, always_send_heartbeats=True))
     pump.start(mav)
-    mavsdk.log_subscribe(lambda level, text, _file, _line: _note_log(notes, int(level), text))
+    connected.set()
     link = Link(run, bus, mav, pump, gate, notes=notes)
     try:
         while lifeline.holds():

@@ -56,6 +56,15 @@ _COMMANDS = {
 }
 
 
+# Where a step that is given up leads: whatever may be in the air is brought down.
+_WAY_DOWN = {
+    Step.TAKEOFF: Step.LAND,
+    Step.ENGAGE: Step.LAND,
+    Step.FLY: Step.DISENGAGE,
+    Step.DISENGAGE: Step.LAND,
+}
+
+
 class HeadlessFlight:
     """Flies one mission; `turn` is one pass, to be called every `TURN_S`.
 
@@ -143,7 +152,7 @@ class HeadlessFlight:
         if self.step is Step.CONNECT:
             why = f" ({_missing(view)})"
         self.failure = self.failure or f"{self.step.value} took too long{why}"
-        self.step = Step.DISENGAGE if self.step is Step.FLY else Step.DONE
+        self.step = _WAY_DOWN.get(self.step, Step.DONE)
         self._since, self._next_try = view.t, 0.0
 
 
@@ -220,5 +229,6 @@ def fly_headless(run: Run, bus: Bus, supervisor: Supervisor, *, as_json: bool, s
         narrator.tell(flight.step.value, director, view)
         bus.heartbeat()
         time.sleep(TURN_S)
+    narrator.close()
     supervisor.stop()
     return summarise(run, director, view.servo, flight.failure, as_json=as_json)

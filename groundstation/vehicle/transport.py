@@ -24,6 +24,7 @@ _SERIAL = re.compile(r"^serial://(/[^:\s]+|[A-Za-z]+\d+):(\d{3,8})$")
 _DATAGRAM = 65_536
 _PEER_SILENT_S = 5.0
 _RECONNECT_S = 1.0
+_WRITE_S = 0.05
 
 
 class UrlError(InputError):
@@ -241,11 +242,12 @@ class SerialPort:
 
         self._url = url
         self._error = serial.SerialException
+        self._full = serial.SerialTimeoutException
         self._open = serial.Serial
         self._port: serial.Serial | None = None
         self._retry_t = 0.0
         try:
-            self._port = self._open(url.place, url.number, timeout=0.1, write_timeout=0.1)
+            self._port = self._open(url.place, url.number, timeout=0.1, write_timeout=_WRITE_S)
         except (serial.SerialException, ValueError) as error:
             raise TransportError(
                 f"serial://{url.place}:{url.number}: cannot be opened ({error}); check the cable, the name "
@@ -269,6 +271,9 @@ class SerialPort:
         if port is not None:
             try:
                 port.write(data)
+            except self._full:
+                # The port cannot take more now: a radio slower than its traffic. The frame is lost, not the port.
+                return
             except (self._error, OSError, TypeError):
                 self.close()
 
@@ -286,7 +291,7 @@ class SerialPort:
             return None
         self._retry_t = now + _RECONNECT_S
         with contextlib.suppress(self._error, OSError):
-            self._port = self._open(self._url.place, self._url.number, timeout=0.1, write_timeout=0.1)
+            self._port = self._open(self._url.place, self._url.number, timeout=0.1, write_timeout=_WRITE_S)
         return self._port
 
 

@@ -56,6 +56,7 @@ _COMMANDS = {
 }
 
 
+_DOWN = frozenset({Stage.DONE, Stage.WAITING})
 # Where a step that is given up leads: whatever may be in the air is brought down.
 _WAY_DOWN = {
     Step.TAKEOFF: Step.LAND,
@@ -133,7 +134,8 @@ class HeadlessFlight:
             return self._flown(view)
         if self.step is Step.DISENGAGE:
             return pilot is not None and pilot.phase == Phase.DISENGAGED
-        return self.step is Step.LAND and not status.armed
+        # The director sees the landing with the next position, which may be later than the status.
+        return self.step is Step.LAND and not status.armed and self._director.stage in _DOWN
 
     def _flown(self, view: Snapshot) -> bool:
         if self._director.stage is Stage.RETURNING:

@@ -60,8 +60,10 @@ def plan(asked: argparse.Namespace) -> Run:
     settings = load_settings(asked.config)
     path = _mission_path(asked)
     mission = _with_vehicle(load_mission(path), asked) if path else None
-    if mission and asked.sim:
+    if mission:
         _check_airframe(mission.vehicle.airframe)
+    if asked.device:
+        _check_device(asked.device)
     url = asked.connect or f"udpin://127.0.0.1:{free_port()}"
     parse_url(url)
     now = datetime.datetime.now().astimezone()
@@ -115,7 +117,7 @@ def _with_vehicle(mission: Mission, asked: argparse.Namespace) -> Mission:
 
 
 def _check_airframe(name: str) -> None:
-    """Refuse an airframe before its simulator is started."""
+    """Refuse an airframe before anything is started: the simulator flies it, and it says what a contact is."""
     from sim.airframe import load_airframe
     from sim.scenario import ScenarioError
 
@@ -123,6 +125,17 @@ def _check_airframe(name: str) -> None:
         load_airframe(name)
     except ScenarioError as error:
         raise InputError(str(error)) from error
+
+
+def _check_device(uri: str) -> None:
+    """Refuse a device that no driver knows. One that is only not plugged in yet is waited for."""
+    from drivers.device import DeviceError
+    from drivers.registry import make_device
+
+    try:
+        make_device(uri)
+    except DeviceError as error:
+        raise InputError(f"--device {uri}: {error}") from error
 
 
 def _sim_options(asked: argparse.Namespace) -> tuple[str, ...]:

@@ -8,6 +8,8 @@ import pytest
 
 from groundstation.cli import build_parser, main
 
+CONNECT = "udpin://127.0.0.1:14998"
+
 
 def run(*arguments, **options):
     return subprocess.run(
@@ -68,12 +70,15 @@ def test_nothing_asked_prints_help_and_is_bad_input():
         (["--sim", "--headless", "--mission", "hover", "--airframe", "zeppelin"], "zeppelin"),
         (["--sim", "--headless", "--mission", "hover", "--logs", "/proc/nowhere"], "logs"),
         (["--sim", "--bogus"], "unrecognized"),
+        (["--connect", CONNECT, "--headless", "--mission", "ODD", "--confirm-real"], "no such airframe"),
         (["review", "/nowhere.rrd"], "/nowhere.rrd"),
         (["missions", "check", "/nowhere.toml"], "cannot be read"),
     ],
 )
 def test_what_is_wrong_gets_one_sentence_and_exit_2(tmp_path, arguments, words):
-    done = run(*arguments, cwd=tmp_path)
+    odd = tmp_path / "odd.toml"
+    odd.write_text('schema = 1\nname = "odd"\ntitle = "t"\n[vehicle]\nairframe = "zeppelin"\n')
+    done = run(*(str(odd) if word == "ODD" else word for word in arguments), cwd=tmp_path)
     assert done.returncode == 2, done
     assert words in done.stderr
     assert "Traceback" not in done.stderr
@@ -112,3 +117,20 @@ def test_help_takes_little_processor_time():
 def test_every_option_has_help():
     for action in build_parser()._actions:
         assert action.help or action.dest == "command"
+
+
+def test_a_device_that_no_driver_knows_is_told_before_anything_starts():
+    # The screen needs a terminal, so this runs in one.
+    import os
+    import pty
+
+    controller, terminal = pty.openpty()
+    command = [sys.executable, "-m", "groundstation.cli", "--sim", "--device", "theremin"]
+    done = subprocess.run(
+        command, stdin=terminal, stdout=terminal, stderr=subprocess.PIPE, text=True, timeout=60, check=False
+    )
+    os.close(controller)
+    os.close(terminal)
+    assert done.returncode == 2
+    assert "theremin" in done.stderr
+    assert len(done.stderr.strip().splitlines()) == 1

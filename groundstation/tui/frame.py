@@ -38,7 +38,7 @@ class Supervisor(Protocol):
     """What the screen needs of `groundstation.processes.Supervisor`."""
 
     def poll(self) -> Sequence[str]:
-        """Look at every process; return a sentence for each that has newly died or fallen silent."""
+        """Look at every process; tell of the newly dead or silent, and return a sentence for each death."""
         ...
 
     def states(self) -> Mapping[str, str]:

@@ -10,7 +10,10 @@ from typing import Annotated, Literal
 import msgspec
 from msgspec import Meta, Struct
 
-from sim.dynamics import Chi, Dynamic, Kinematic, Motion
+from sim.models.dynamic import Chi, Dynamic
+from sim.models.kinematic import Kinematic
+from sim.models.lean import Lean
+from sim.models.motion import Motion
 from sim.scenario import ScenarioError, error_sentence, read_toml
 
 PRESETS_FOLDER = Path(__file__).resolve().parent / "airframes"
@@ -34,7 +37,7 @@ class Airframe(Struct, frozen=True, forbid_unknown_fields=True):
         yaw_rate_deg: Largest reference about the vertical, degrees/s.
         tilt_deg: Largest roll or pitch, degrees.
         attitude_time: Time constant with which roll and pitch follow the acceleration, s.
-        air_drag: D, what a metre per second of wind accelerates, 1/s; see `sim.dynamics.Dynamic`.
+        air_drag: D, what a metre per second of wind accelerates, 1/s; see `sim.models.dynamic.Dynamic`.
         endurance_s: Hovering time from a full battery, s.
         cells: Battery cells in series.
         chi: The velocity response.
@@ -64,9 +67,13 @@ class Airframe(Struct, frozen=True, forbid_unknown_fields=True):
 
 
 MODELS: dict[Model, Callable[[Airframe], Motion]] = {
-    "kinematic": lambda _: Kinematic(),
-    "dynamic": lambda airframe: Dynamic(airframe.chi, airframe.air_drag),
+    "kinematic": lambda airframe: Kinematic(airframe.air_drag, _lean(airframe)),
+    "dynamic": lambda airframe: Dynamic(airframe.chi, airframe.air_drag, _lean(airframe)),
 }
+
+
+def _lean(airframe: Airframe) -> Lean:
+    return Lean(math.radians(airframe.tilt_deg), airframe.attitude_time, airframe.air_drag)
 
 
 def load_airframe(name: str) -> Airframe:

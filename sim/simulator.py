@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 import math
-from math import cos, sin
 from typing import NamedTuple
 
 from sim.airframe import MODELS, Airframe, Model, load_airframe
-from sim.attitude import Attitude
-from sim.autopilot import Autopilot, Severity
+from sim.autopilot.autopilot import Autopilot, Severity
 from sim.battery import Battery
 from sim.collision import SKIN, Collider, without
-from sim.dynamics import Falling
 from sim.kinematics import ZERO3, ZERO4, Vector3, Vector4, vehicle_rates, world_rates, wrap
 from sim.scenario import Scenario, ScenarioError
 from sim.wind import wind_at
@@ -62,12 +59,11 @@ class Simulator:
         self.grounded = True
         self.collisions: list[Collision] = []
         self.battery = Battery(airframe.endurance_s, airframe.cells)
-        self.attitude = Attitude(math.radians(airframe.tilt_deg), airframe.attitude_time, airframe.air_drag)
         self._wind = scenario.wind
-        self._flying = MODELS[model or scenario.vehicle.model](airframe)
-        self._falling = Falling(airframe.air_drag)
+        self._motion = MODELS[model or scenario.vehicle.model](airframe)
+        self.attitude = self._motion.attitude
         self._collider = Collider(self.world, airframe.radius)
-        self.autopilot = Autopilot(airframe, self._flying, self.battery, self.p)
+        self.autopilot = Autopilot(airframe, self._motion, self.battery, self.p)
         distance, name = self.world.clearance(ZERO3)
         if distance <= airframe.radius + SKIN:
             raise ScenarioError(
@@ -82,16 +78,13 @@ class Simulator:
         self.wind = wind_at(self._wind, -1.0 if since is None else self.t - since)
         if self.grounded and (v_ref is None or v_ref[2] <= LIFT_OFF):
             self.v = ZERO4
-            self.attitude.level()
+            self._motion.rest()
         else:
             self._move(v_ref, dt)
         self.battery.drain(dt, flying=self.autopilot.armed and not self.grounded)
 
     def _move(self, v_ref: Vector4 | None, dt: float) -> None:
-        if v_ref is None:
-            p, v = self._falling.step(self.p, self.v, ZERO4, self.wind, dt)
-        else:
-            p, v = self._flying.step(self.p, self.v, v_ref, self.wind, dt)
+        p, v = self._motion.step(self.p, self.v, v_ref, self.wind, dt)
         x, y, z, yaw = p
         x, y, z = self._collider.travel((self.p[0], self.p[1], self.p[2]), (x, y, z))
         self.grounded = False
@@ -99,9 +92,8 @@ class Simulator:
             v = self._stopped(v, yaw)
         if z <= 0.0:
             z, v = 0.0, self._landed(v)
-        before, self.v = self.v, v
+        self.v = v
         self.p = (x, y, z, yaw if -math.pi < yaw <= math.pi else wrap(yaw))
-        self.attitude.follow(before, v, self._through_air(), dt)
 
     def _stopped(self, v: Vector4, yaw: float) -> Vector4:
         """Take out the velocity into the obstacles touched, and tell of those newly struck."""
@@ -122,12 +114,6 @@ class Simulator:
     def _strike(self, name: str) -> None:
         self.collisions.append(Collision(self.t, name))
         self.autopilot.say(Severity.CRITICAL, f"Collision with {name}")
-
-    def _through_air(self) -> Vector3:
-        """Return the velocity through the air on the vehicle's axes, m/s."""
-        c, s = cos(self.p[3]), sin(self.p[3])
-        x, y, z = self.wind
-        return self.v[0] - c * x - s * y, self.v[1] - c * y + s * x, self.v[2] - z
 
 
 def build(scenario: Scenario, airframe: str | None = None, model: Model | None = None) -> Simulator:

@@ -4,10 +4,10 @@ import math
 
 import pytest
 
-from sim.autopilot import Severity
-from sim.guidance import FREE, Target
-from sim.navigator import Mode
-from sim.parameters import NAMES, SPECS, Parameters
+from sim.autopilot.autopilot import Severity
+from sim.autopilot.guidance import FREE, Target
+from sim.autopilot.navigator import Mode
+from sim.autopilot.parameters import NAMES, SPECS, Parameters
 from sim.scenario import Box, Gust, Scenario, ScenarioError, Sphere, VehicleChoice, Wind
 from sim.simulator import build
 

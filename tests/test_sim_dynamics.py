@@ -7,12 +7,15 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from sim.airframe import MODELS, load_airframe
-from sim.attitude import Attitude
-from sim.dynamics import GRAVITY, Dynamic, Falling, Kinematic
 from sim.kinematics import ZERO3, ZERO4
+from sim.models.dynamic import Dynamic
+from sim.models.falling import Falling
+from sim.models.kinematic import Kinematic
+from sim.models.lean import Lean
+from sim.models.motion import GRAVITY
 
 M100 = load_airframe("matrice_100")
-DYNAMIC = Dynamic(M100.chi, M100.air_drag)
+DYNAMIC = Dynamic(M100.chi, M100.air_drag, Lean(0.6, 0.12, 0.3))
 VELOCITIES = st.tuples(st.floats(-5, 5), st.floats(-5, 5), st.floats(-3, 3), st.floats(-1.5, 1.5))
 
 
@@ -68,7 +71,7 @@ def test_the_reference_is_the_inverse_of_the_model(v, acceleration):
 @given(st.floats(-math.pi, math.pi))
 def test_wind_drifts_the_vehicle_with_the_air_whatever_its_heading(yaw):
     """With no reference, drag D w = C v / M: the drift is along the wind where the axis is aligned with it."""
-    model = Dynamic(load_airframe("x500").chi, 0.3)
+    model = Dynamic(load_airframe("x500").chi, 0.3, Lean(0.6, 0.12, 0.3))
     p, _ = flown(model, ZERO4, 10.0, dt=0.02, p=(0.0, 0.0, 0.0, yaw), wind=(1.0, 0.0, 0.0))
     assert p[0] == pytest.approx(0.3 * 0.556 * (10.0 - 0.556), rel=1e-3)
     assert p[1] == pytest.approx(0.0, abs=1e-9)
@@ -82,7 +85,13 @@ def test_wind_from_behind_a_vehicle_that_faces_north_is_an_acceleration_forward(
 @given(VELOCITIES, st.integers(1, 200))
 def test_the_kinematic_model_is_exact(v_ref, steps):
     straight = (*v_ref[:3], 0.0)
-    p, v = flown(Kinematic(), straight, steps * 0.004, p=(1.0, 2.0, 3.0, 0.0), wind=(9.0, 9.0, 9.0))
+    p, v = flown(
+        Kinematic(0.3, Lean(0.6, 0.12, 0.3)),
+        straight,
+        steps * 0.004,
+        p=(1.0, 2.0, 3.0, 0.0),
+        wind=(9.0, 9.0, 9.0),
+    )
     t = steps * 0.004
     assert v == straight
     assert p == pytest.approx((1 + straight[0] * t, 2 + straight[1] * t, 3 + straight[2] * t, 0.0), abs=1e-9)
@@ -97,23 +106,31 @@ def test_both_models_answer_the_same_calls():
         assert len(motion.reference(v, v, ZERO4)) == 4
 
 
+def fallen(falling, seconds, dt=0.004, v=ZERO4, wind=ZERO3):
+    p = ZERO4
+    for _ in range(round(seconds / dt)):
+        p, v = falling.step(p, v, wind, dt)
+    return p, v
+
+
 def test_a_body_without_motors_falls_to_terminal_speed():
-    falling = Falling(0.5)
-    _, v = flown(falling, (9.0, 9.0, 9.0, 0.0), 0.1)
+    _, v = fallen(Falling(0.5), 0.1)
     assert v[2] == pytest.approx(-GRAVITY * 0.1, rel=0.03)
-    _, v = flown(falling, ZERO4, 30.0, wind=(2.0, 0.0, 0.0))
+    _, v = fallen(Falling(0.5), 30.0, wind=(2.0, 0.0, 0.0))
     assert v[2] == pytest.approx(-GRAVITY / 0.5, rel=1e-3)
     assert v[0] == pytest.approx(2.0, rel=1e-3)
 
 
 def test_a_spinning_body_falls_straight():
-    p, _ = flown(Falling(0.0), ZERO4, 2.0, v=(3.0, 0.0, 0.0, 2.0), dt=0.0005)
+    p, _ = fallen(Falling(0.0), 2.0, v=(3.0, 0.0, 0.0, 2.0), dt=0.0005)
     assert p[:2] == pytest.approx((6.0, 0.0), abs=0.02)
 
 
 def lean(before, after, air=ZERO3, limit=0.7):
-    attitude = Attitude(limit, 0.01, 0.3)
-    attitude.follow(before, after, air, 1.0)
+    """Lean for a change of velocity, at a velocity through the `air`."""
+    attitude = Lean(limit, 0.01, 0.3)
+    wind = (after[0] - air[0], after[1] - air[1], after[2] - air[2])
+    attitude.follow(ZERO4, before, after, wind, 1.0)
     return attitude
 
 

@@ -7,8 +7,8 @@ import pytest
 from pymavlink.dialects.v20 import common as m
 from sim_wire import DT, NAN, Wire
 
+from sim.autopilot.parameters import NAMES, SPECS
 from sim.mavlink.wire import Inbox, Outbox
-from sim.parameters import NAMES, SPECS
 
 
 def test_frames_are_found_between_garbage_and_across_pieces():

@@ -7,7 +7,7 @@ from pymavlink.dialects.v20 import common as m
 from sim_wire import DT, LOCAL_NED, NAN, VELOCITY_YAW_RATE, Wire
 
 from sim import frames
-from sim.navigator import Mode
+from sim.autopilot.navigator import Mode
 from sim.scenario import Box
 
 

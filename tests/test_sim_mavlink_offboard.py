@@ -6,7 +6,7 @@ import pytest
 from pymavlink.dialects.v20 import common as m
 from sim_wire import BODY_NED, DT, LOCAL_NED, NAN, POSITION_YAW, VELOCITY_YAW_RATE, Wire
 
-from sim.navigator import Mode
+from sim.autopilot.navigator import Mode
 
 
 @pytest.mark.parametrize("yaw_deg", [0.0, 90.0, -135.0])

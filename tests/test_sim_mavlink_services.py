@@ -6,7 +6,7 @@ import pytest
 from pymavlink.dialects.v20 import common as m
 from sim_wire import NAN, US, Wire
 
-from sim.parameters import NAMES
+from sim.autopilot.parameters import NAMES
 
 
 def test_timesync_and_ping_are_answered():

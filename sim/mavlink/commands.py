@@ -9,11 +9,11 @@ from typing import NamedTuple
 from pymavlink.dialects.v20 import common as m
 
 from sim import frames
-from sim.autopilot import Autopilot, Severity, Verdict
+from sim.autopilot.autopilot import Autopilot, Severity, Verdict
+from sim.autopilot.navigator import Mode
 from sim.mavlink.modes import MODES, refusal
 from sim.mavlink.streams import Streams
 from sim.mavlink.wire import Outbox
-from sim.navigator import Mode
 from sim.simulator import Simulator
 
 # The value that makes arming forced, and disarming a kill (MAVLink, MAV_CMD_COMPONENT_ARM_DISARM).

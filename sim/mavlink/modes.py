@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from sim.navigator import Mode
+from sim.autopilot.navigator import Mode
 
 CUSTOM_MODES: dict[Mode, tuple[int, int]] = {
     Mode.TAKEOFF: (4, 2),

@@ -7,8 +7,8 @@ from collections import deque
 
 from pymavlink.dialects.v20 import common as m
 
+from sim.autopilot.parameters import NAMES, SPECS, Parameters
 from sim.mavlink.wire import Outbox
-from sim.parameters import NAMES, SPECS, Parameters
 
 _LISTED_A_STEP = 2
 _FTP_NAK, _FTP_UNKNOWN_COMMAND = 129, 7

@@ -7,7 +7,7 @@ from math import isfinite
 from pymavlink.dialects.v20 import common as m
 
 from sim import frames
-from sim.guidance import FREE, Free3, Target
+from sim.autopilot.guidance import FREE, Free3, Target
 from sim.kinematics import Vector3, world_rates
 
 _POSITION = (1, 2, 4)

@@ -7,9 +7,9 @@ from math import nan
 from pymavlink.dialects.v20 import common as m
 
 from sim import frames
+from sim.autopilot.navigator import Mode
 from sim.mavlink.modes import custom_mode
 from sim.mavlink.motion import Builder, boot_ms, boot_us
-from sim.navigator import Mode
 from sim.simulator import Simulator
 
 CAPABILITIES = (

@@ -9,9 +9,9 @@ from math import cos, hypot, radians, sin
 from typing import NamedTuple
 
 from sim.airframe import Airframe
-from sim.dynamics import Motion
+from sim.autopilot.parameters import Parameters
 from sim.kinematics import ZERO3, Vector3, Vector4, vehicle_rates, world_rates, wrap
-from sim.parameters import Parameters
+from sim.models.motion import Motion
 
 Free3 = tuple[float | None, float | None, float | None]
 FREE: Free3 = (None, None, None)

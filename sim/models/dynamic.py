@@ -1,54 +1,14 @@
-"""How a vehicle moves when it is asked for velocities: the kinematic model, or the identified dynamic one.
-
-Both have the same face, `Motion`. It is chosen once, with the airframe; a step does not ask which it is. Vectors of
-four are `p = [x, y, z, yaw]` in the world and `v = [forward, left, up, yaw_rate]` on the vehicle; SI units.
-"""
+"""The identified dynamic model: a velocity response, linear in its parameters χ."""
 
 from __future__ import annotations
 
 from math import cos, sin
-from typing import Protocol
 
 from msgspec import Struct
 
-from sim.kinematics import Vector3, Vector4, advance
-
-GRAVITY = 9.80665
-
-
-class Body(Protocol):
-    """Something that moves."""
-
-    def step(
-        self, p: Vector4, v: Vector4, v_ref: Vector4, wind: Vector3, dt: float, /
-    ) -> tuple[Vector4, Vector4]:
-        """Return p and v after `dt` seconds of the reference `v_ref` in wind (world, m/s). Yaw is not wrapped."""
-        ...
-
-
-class Motion(Body, Protocol):
-    """A model of flight."""
-
-    def reference(self, v: Vector4, wanted: Vector4, acceleration: Vector4, /) -> Vector4:
-        """Return the reference that gives `v` the rate `acceleration`, on the way to the velocities `wanted`.
-
-        This is what the vehicle's own autopilot knows of its vehicle; an offboard reference does not pass here.
-        """
-        ...
-
-
-class Kinematic:
-    """The ideal vehicle of equations (1) to (3): it has the velocities it is asked for, at once, in any wind."""
-
-    def step(
-        self, p: Vector4, _v: Vector4, v_ref: Vector4, _wind: Vector3, dt: float, /
-    ) -> tuple[Vector4, Vector4]:
-        """Return p + J(θ) v_ref dt, and v_ref."""
-        return advance(p, v_ref, dt), v_ref
-
-    def reference(self, _v: Vector4, wanted: Vector4, _acceleration: Vector4, /) -> Vector4:
-        """Return the velocities wanted: nothing else can be asked of this model."""
-        return wanted
+from sim.kinematics import Vector3, Vector4
+from sim.models.falling import Falling, carried
+from sim.models.lean import Lean
 
 
 class Chi(Struct, frozen=True, forbid_unknown_fields=True):
@@ -85,12 +45,19 @@ class Dynamic:
     Args:
         chi: The airframe's parameters.
         air_drag: D, 1/s.
+        lean: Roll and pitch, which the model leaves out.
     """
 
-    def __init__(self, chi: Chi, air_drag: float) -> None:
+    def __init__(self, chi: Chi, air_drag: float, lean: Lean) -> None:
+        self.attitude = lean
         self._m = (chi.chi_1, chi.chi_3, chi.chi_5, chi.chi_9)
         self._c = (chi.chi_10, chi.chi_11, chi.chi_13, chi.chi_14, chi.chi_16, chi.chi_19)
         self._drag = air_drag
+        self._falling = Falling(air_drag)
+
+    def rest(self) -> None:
+        """Stand level."""
+        self.attitude.level()
 
     def rate(self, v: Vector4, v_ref: Vector4, push: Vector3) -> Vector4:
         """Return v̇ = M⁻¹ (v_ref − C(ω) v) + push.
@@ -111,9 +78,19 @@ class Dynamic:
         )
 
     def step(
-        self, p: Vector4, v: Vector4, v_ref: Vector4, wind: Vector3, dt: float, /
+        self, p: Vector4, v: Vector4, v_ref: Vector4 | None, wind: Vector3, dt: float, /
     ) -> tuple[Vector4, Vector4]:
-        """Return p and v one fourth-order Runge-Kutta step of v later; p by the mean velocity at the mean yaw."""
+        """Return p and v after `dt` seconds, and lean accordingly."""
+        if v_ref is None:
+            p, after = self._falling.step(p, v, wind, dt)
+        else:
+            after = self._responded(p, v, v_ref, wind, dt)
+            p = carried(p, v, after, dt)
+        self.attitude.follow(p, v, after, wind, dt)
+        return p, after
+
+    def _responded(self, p: Vector4, v: Vector4, v_ref: Vector4, wind: Vector3, dt: float) -> Vector4:
+        """Return v one fourth-order Runge-Kutta step later."""
         c, s, drag = cos(p[3]), sin(p[3]), self._drag
         push = (drag * (c * wind[0] + s * wind[1]), drag * (c * wind[1] - s * wind[0]), drag * wind[2])
         half = 0.5 * dt
@@ -122,13 +99,12 @@ class Dynamic:
         k3 = self.rate(_along(v, k2, half), v_ref, push)
         k4 = self.rate(_along(v, k3, dt), v_ref, push)
         sixth = dt / 6.0
-        after = (
+        return (
             v[0] + sixth * (k1[0] + 2.0 * (k2[0] + k3[0]) + k4[0]),
             v[1] + sixth * (k1[1] + 2.0 * (k2[1] + k3[1]) + k4[1]),
             v[2] + sixth * (k1[2] + 2.0 * (k2[2] + k3[2]) + k4[2]),
             v[3] + sixth * (k1[3] + 2.0 * (k2[3] + k3[3]) + k4[3]),
         )
-        return _carried(p, v, after, dt), after
 
     def reference(self, v: Vector4, _wanted: Vector4, acceleration: Vector4, /) -> Vector4:
         """Return M a + C(ω) v: the model solved for its reference."""
@@ -143,45 +119,5 @@ class Dynamic:
         )
 
 
-class Falling:
-    """A vehicle whose motors have stopped in the air: gravity and linear drag −D (v − w); it keeps its yaw rate.
-
-    Args:
-        air_drag: D, 1/s.
-    """
-
-    def __init__(self, air_drag: float) -> None:
-        self._drag = air_drag
-
-    def step(
-        self, p: Vector4, v: Vector4, _v_ref: Vector4, wind: Vector3, dt: float, /
-    ) -> tuple[Vector4, Vector4]:
-        """Return p and v after `dt` seconds of fall; what is asked for does not matter."""
-        c, s, drag = cos(p[3]), sin(p[3]), self._drag
-        forward = drag * (c * wind[0] + s * wind[1] - v[0]) + v[3] * v[1]
-        left = drag * (c * wind[1] - s * wind[0] - v[1]) - v[3] * v[0]
-        up = drag * (wind[2] - v[2]) - GRAVITY
-        after = (v[0] + forward * dt, v[1] + left * dt, v[2] + up * dt, v[3])
-        return _carried(p, v, after, dt), after
-
-
 def _along(v: Vector4, rate: Vector4, dt: float) -> Vector4:
     return v[0] + rate[0] * dt, v[1] + rate[1] * dt, v[2] + rate[2] * dt, v[3] + rate[3] * dt
-
-
-def _carried(p: Vector4, before: Vector4, after: Vector4, dt: float) -> Vector4:
-    """Integrate equation (2) by the mean velocity at the mean yaw: second order in dt."""
-    forward, left, up, omega = (
-        0.5 * (before[0] + after[0]),
-        0.5 * (before[1] + after[1]),
-        0.5 * (before[2] + after[2]),
-        0.5 * (before[3] + after[3]),
-    )
-    middle = p[3] + 0.5 * omega * dt
-    c, s = cos(middle), sin(middle)
-    return (
-        p[0] + (c * forward - s * left) * dt,
-        p[1] + (s * forward + c * left) * dt,
-        p[2] + up * dt,
-        p[3] + omega * dt,
-    )

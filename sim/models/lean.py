@@ -10,14 +10,14 @@ from __future__ import annotations
 
 from math import asin, atan2, cos, exp, sin, sqrt
 
-from sim.dynamics import GRAVITY
 from sim.kinematics import Vector3, Vector4
+from sim.models.motion import GRAVITY
 
 # Thrust never points down: however fast a vehicle sinks, its motors hold some of its weight.
 _LEAST_THRUST = 0.3 * GRAVITY
 
 
-class Attitude:
+class Lean:
     """How the vehicle leans.
 
     Args:
@@ -40,13 +40,14 @@ class Attitude:
         self.roll = self.pitch = self.roll_rate = self.pitch_rate = 0.0
         self._force = (0.0, 0.0, GRAVITY)
 
-    def follow(self, before: Vector4, after: Vector4, air: Vector3, dt: float) -> None:
+    def follow(self, p: Vector4, before: Vector4, after: Vector4, wind: Vector3, dt: float) -> None:
         """Lean for a change of velocity.
 
         Args:
+            p: Where the vehicle is, for its yaw.
             before: Velocities at the step's begin, on the vehicle's axes.
             after: At its end.
-            air: Velocity through the air, v − w, on the same axes, m/s.
+            wind: The air's velocity, world, m/s.
             dt: The step, s.
         """
         omega = after[3]
@@ -54,8 +55,10 @@ class Attitude:
         left = (after[1] - before[1]) / dt + omega * after[0]
         up = (after[2] - before[2]) / dt + GRAVITY
         self._force = (forward, left, up)
-        t_l, t_m = forward + self._drag * air[0], left + self._drag * air[1]
-        t_n = max(up + self._drag * air[2], _LEAST_THRUST)
+        c, s, drag = cos(p[3]), sin(p[3]), self._drag
+        t_l = forward + drag * (after[0] - c * wind[0] - s * wind[1])
+        t_m = left + drag * (after[1] - c * wind[1] + s * wind[0])
+        t_n = max(up + drag * (after[2] - wind[2]), _LEAST_THRUST)
         roll = self._within(-asin(t_m / sqrt(t_l * t_l + t_m * t_m + t_n * t_n)))
         pitch = self._within(atan2(t_l, t_n))
         if dt != self._blend_dt:

@@ -12,12 +12,12 @@ from math import inf
 from typing import NamedTuple
 
 from sim.airframe import Airframe
+from sim.autopilot.guidance import Target
+from sim.autopilot.navigator import Mode, Navigator
+from sim.autopilot.parameters import Parameters
 from sim.battery import Battery
-from sim.dynamics import Motion
-from sim.guidance import Target
 from sim.kinematics import Vector3, Vector4
-from sim.navigator import Mode, Navigator
-from sim.parameters import Parameters
+from sim.models.motion import Motion
 
 # PX4 wants setpoints at 2 Hz or more before it enters Offboard.
 STREAM_S = 0.5

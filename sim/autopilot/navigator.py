@@ -10,10 +10,10 @@ from enum import Enum
 from math import hypot
 
 from sim.airframe import Airframe
-from sim.dynamics import Motion
-from sim.guidance import FREE, Guidance, Target
+from sim.autopilot.guidance import FREE, Guidance, Target
+from sim.autopilot.parameters import Parameters
 from sim.kinematics import ZERO3, ZERO4, Vector3, Vector4, world_rates
-from sim.parameters import Parameters
+from sim.models.motion import Motion
 
 _TAKEOFF_DONE_M = 0.15
 _WAYPOINT_M = 0.5

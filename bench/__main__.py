@@ -15,6 +15,7 @@ BENCHES = {
     "start": "from the command to a vehicle that may take off",
     "step_to_wire": "from a step of the handle to the datagram that carries it",
     "paper": "the paper's mission, headless",
+    "passivity": "energy at the haptic port with delay and loss",
 }
 
 

@@ -56,12 +56,14 @@ class Control(Struct, frozen=True, forbid_unknown_fields=True):
     Attributes:
         k1: Diagonal of K₁, 1/s in effect.
         stiffness: k_x, k_y, k_z: force on the hand a metre of position error, N/m.
-        damping: Force against the handle's velocity, N·s/m.
+        damping: Force against the handle's velocity, N·s/m; no more of it is used than the device renders passively.
+        passivity: Keep the hand from being given more energy than it gave; off only to see what happens without.
     """
 
     k1: Gains4 = (1.2, 1.2, 1.2, 1.0)
     stiffness: Gains3 = (4.0, 4.0, 4.0)
-    damping: Annotated[float, Meta(ge=0, le=50)] = 2.0
+    damping: Annotated[float, Meta(ge=0, le=50)] = 0.4
+    passivity: bool = True
 
 
 class Limits(Struct, frozen=True, forbid_unknown_fields=True):

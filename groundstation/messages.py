@@ -152,6 +152,8 @@ class PilotState(Record):
         v_ref: As equation (4) gives it, vehicle's axes; `Setpoint` has it within limits.
         force: As equation (5) gives it, world, N; `Handle` has what is rendered, damped, ramped and limited.
         state_age: Age of the vehicle's state, s; infinite before the first.
+        port_energy: What the hand has given through the haptic port and not been given back, J.
+        dissipated: What the passivity controller has taken out of the force so far, J.
         centred: The handle is where engaging is possible.
         reason: Why the hand was last uncoupled, or could not be coupled; empty while it is.
     """
@@ -162,6 +164,8 @@ class PilotState(Record):
     v_ref: ctypes.Array[_F64]
     force: ctypes.Array[_F64]
     state_age: float
+    port_energy: float
+    dissipated: float
     phase: int
     on_leash: int
     centred: int
@@ -174,6 +178,8 @@ class PilotState(Record):
         ("v_ref", _F64 * 4),
         ("force", _F64 * 3),
         ("state_age", _F64),
+        ("port_energy", _F64),
+        ("dissipated", _F64),
         ("phase", _U8),
         ("on_leash", _U8),
         ("centred", _U8),

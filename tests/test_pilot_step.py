@@ -13,6 +13,7 @@ from drivers.device import ZERO3, DeviceInfo, HandleState
 from groundstation.config import Control, Mapping, Settings
 from groundstation.messages import Phase
 from groundstation.pilot.controller import position_error, world_rates
+from groundstation.pilot.passivity import Port
 from groundstation.pilot.pilot import Inputs, Memory, Outputs, Pilot
 from groundstation.pilot.sight import VehicleSample
 
@@ -155,7 +156,7 @@ def pulled() -> Flight:
     flight = Flight()
     flight.blocked = True
     flight.run(3.0, hand(x=0.1))
-    assert hypot(*flight.memory.force) > 5.0
+    assert hypot(*flight.memory.port.force) > 5.0
     return flight
 
 
@@ -252,7 +253,8 @@ scenes = st.lists(
 @given(scenes, st.sampled_from(["world", "heading"]))
 @settings(deadline=None)
 def test_whatever_hand_and_vehicle_do_every_limit_holds(scenes: list, frame: str) -> None:
-    pilot, memory = Pilot(Settings(mapping=Mapping(frame=frame)), INFO), Memory()
+    settings = Settings(mapping=Mapping(frame=frame), control=Control(passivity=False))
+    pilot, memory = Pilot(settings, INFO), Memory()
     limits, mapping = SETTINGS.limits, SETTINGS.mapping
     force, velocity, coupled = ZERO3, (0.0, 0.0, 0.0, 0.0), False
     for handle, sample, age, phase, ticks in scenes:
@@ -280,7 +282,7 @@ def test_whatever_hand_and_vehicle_do_every_limit_holds(scenes: list, frame: str
 def test_the_strongest_force_is_gone_within_100_ms_on_any_device(force_limit: float) -> None:
     info = DeviceInfo("test", "", 4, 0.1, force_limit, 1000.0, 1000.0, "force")
     pilot = Pilot(SETTINGS, info)
-    memory = Memory(force=(force_limit, 0.0, 0.0))
+    memory = Memory(port=Port(force=(force_limit, 0.0, 0.0)))
     out = None
     for _ in range(100):
         memory, out = pilot.step(memory, Inputs(DT, Phase.DISENGAGED, False, hand(), VehicleSample(), 0.0))

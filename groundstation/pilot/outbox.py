@@ -90,6 +90,8 @@ class Outbox:
         record.v_ref[:] = outputs.v_ref
         record.force[:] = outputs.position_force
         record.state_age = state_age
+        record.port_energy = outputs.port.energy
+        record.dissipated = outputs.port.dissipated
         record.phase = phase
         record.on_leash = outputs.on_leash
         record.centred = centred

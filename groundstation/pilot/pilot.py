@@ -16,6 +16,7 @@ from groundstation.pilot.controller import check_gains, position_error, velocity
 from groundstation.pilot.feedback import hand_force, position_force, scaled
 from groundstation.pilot.limits import SetpointLimiter, SetpointMotion, slewed
 from groundstation.pilot.mapping import RateMapping, advance, leashed
+from groundstation.pilot.passivity import Port, observed, passive, passive_gains, physical_damping
 from groundstation.pilot.sight import ZERO4, Sight, VehicleSample, look
 
 # A force that must go is gone after this, whatever the device's limit: safely within 100 ms.
@@ -50,7 +51,7 @@ class Memory(NamedTuple):
         p_h: Where the hand wants the drone, world, m and rad.
         motion: Of the setpoint, within limits.
         presence: Share of the force that is rendered; it grows after engaging.
-        force: On the hand, handle frame, N.
+        port: Account of the haptic port's energy; with the force on the hand.
         coupled: The last tick was an engaged one.
     """
 
@@ -58,7 +59,7 @@ class Memory(NamedTuple):
     p_h: Vector4 = ZERO4
     motion: SetpointMotion = SetpointMotion()
     presence: float = 0.0
-    force: Vector3 = ZERO3
+    port: Port = Port()
     coupled: bool = False
 
 
@@ -67,7 +68,7 @@ class Outputs(NamedTuple):
 
     Attributes:
         setpoint: For the vehicle: v_ref within limits, vehicle's axes, m/s and rad/s.
-        force: For the hand, handle frame, N: within the device's limit, slewed and ramped.
+        port: The haptic port with the force for the hand.
         p: Where the vehicle is at this tick, world, m and rad; see `groundstation.pilot.sight`.
         p_h, p_h_rate, error, v_ref: The terms of equation (4).
         position_force: Equation (5) as it stands, world, N.
@@ -75,7 +76,7 @@ class Outputs(NamedTuple):
     """
 
     setpoint: Vector4
-    force: Vector3
+    port: Port
     p: Vector4
     p_h: Vector4
     p_h_rate: Vector4
@@ -84,13 +85,21 @@ class Outputs(NamedTuple):
     position_force: Vector3
     on_leash: bool
 
+    @property
+    def force(self) -> Vector3:
+        """For the hand, handle frame, N: within the device's limit, slewed, ramped and passive."""
+        return self.port.force
+
 
 class Pilot:
     """The controller with its settings; it keeps no state of its own.
 
     Args:
         settings: Mapping, gains, limits, staleness.
-        device: Workspace and force limit of the device in hand.
+        device: The device in hand.
+
+    Attributes:
+        gains: Stiffness and damping as set, or less where the device does not render so much passively.
 
     Raises:
         ValueError: A gain is not positive and finite.
@@ -103,6 +112,9 @@ class Pilot:
         self._limiter = SetpointLimiter(settings.limits)
         self._settings = settings
         self._force_limit = device.force_limit
+        self._passive = settings.control.passivity and device.renders == "force"
+        self._damping_limit = physical_damping(device)
+        self.gains = passive_gains(settings, device)
 
     def step(self, memory: Memory, inputs: Inputs) -> tuple[Memory, Outputs]:
         """Run one tick.
@@ -121,10 +133,11 @@ class Pilot:
             ValueError: An input that an engaged tick depends on is not finite.
         """
         sight, p = look(memory.sight, inputs.vehicle, inputs.state_age, inputs.dt)
+        port = observed(memory.port, inputs.hand.position)
         if inputs.phase is not Phase.ENGAGED:
-            force = ZERO3 if inputs.cut else self._faded(memory.force, inputs.dt)
-            idle = Outputs(ZERO4, force, p, p, ZERO4, ZERO4, ZERO4, ZERO3, on_leash=False)
-            return Memory(sight, p_h=p, force=force), idle
+            port = self._held(port, self._faded(port.force, inputs.dt), inputs)
+            idle = Outputs(ZERO4, port, p, p, ZERO4, ZERO4, ZERO4, ZERO3, on_leash=False)
+            return Memory(sight, p_h=p, port=port), idle
         mapping, hand, yaw = self._settings.mapping, inputs.hand, p[3]
         rate = self.mapping.rate(hand.position, hand.yaw, yaw)
         wished = advance(memory.p_h if memory.coupled else p, rate, inputs.dt)
@@ -132,24 +145,31 @@ class Pilot:
         error = position_error(p_h, p)
         v_ref = velocity_reference(rate, error, yaw, self._settings.control.k1)
         motion, setpoint = self._limiter.step(memory.motion, v_ref, inputs.dt)
-        pull = position_force(error, self._settings.control.stiffness)
-        presence, force = self._render(memory, inputs, pull, yaw)
-        outputs = Outputs(setpoint, force, p, p_h, rate, error, v_ref, pull, on_leash)
-        return Memory(sight, p_h, motion, presence, force, coupled=True), outputs
+        pull = position_force(error, self.gains.stiffness)
+        presence, wanted = self._rendered(memory.presence, port.force, inputs, pull, yaw)
+        port = self._held(port, wanted, inputs)
+        outputs = Outputs(setpoint, port, p, p_h, rate, error, v_ref, pull, on_leash)
+        return Memory(sight, p_h, motion, presence, port, coupled=True), outputs
 
-    def _render(
-        self, memory: Memory, inputs: Inputs, pull: Vector3, vehicle_yaw: float
+    def _rendered(
+        self, presence: float, force: Vector3, inputs: Inputs, pull: Vector3, vehicle_yaw: float
     ) -> tuple[float, Vector3]:
         """Return the force's presence and the force: it comes in gently and leaves with a stale state."""
         dt, settings = inputs.dt, self._settings
-        if inputs.cut:
-            return 0.0, ZERO3
         if not inputs.state_age <= settings.safety.force_stale_s:
-            return 0.0, self._faded(memory.force, dt)
-        presence = min(1.0, memory.presence + dt / settings.limits.force_ramp_s)
+            return 0.0, self._faded(force, dt)
+        presence = min(1.0, presence + dt / settings.limits.force_ramp_s)
         turn = self.mapping.turn(vehicle_yaw)
-        wanted = hand_force(pull, turn, inputs.hand.velocity, settings.control.damping, self._force_limit)
-        return presence, slewed(memory.force, scaled(wanted, presence), settings.limits.force_slew * dt)
+        wanted = hand_force(pull, turn, inputs.hand.velocity, self.gains.damping, self._force_limit)
+        return presence, slewed(force, scaled(wanted, presence), settings.limits.force_slew * dt)
+
+    def _held(self, port: Port, wanted: Vector3, inputs: Inputs) -> Port:
+        """Return the port with the force that the hand is given until the next tick."""
+        if inputs.cut:
+            return port._replace(force=ZERO3)
+        if not self._passive:
+            return port._replace(force=wanted)
+        return passive(port, wanted, inputs.hand.velocity, inputs.dt, self._damping_limit)
 
     def _faded(self, force: Vector3, dt: float) -> Vector3:
         """Let a force go, at a rate that takes the device's strongest to nothing in `FADE_S`."""

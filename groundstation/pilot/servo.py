@@ -137,6 +137,18 @@ class Servo:
         self._pilot = Pilot(self._settings, info)
         self._memory = Memory()
         self._homed = False
+        self._tell_gains()
+
+    def _tell_gains(self) -> None:
+        """Say where the device cannot render the gains that are set."""
+        set_, used, info = self._settings.control, self._pilot.gains, self._info
+        if used != (set_.stiffness, set_.damping):
+            x, y, z = used.stiffness
+            self._bus.event(
+                Severity.INFO,
+                f"{info.name} is passive at {info.rate:.0f} Hz up to control.stiffness = "
+                f"[{x:.3g}, {y:.3g}, {z:.3g}], control.damping = {used.damping:.3g}: these are used.",
+            )
 
     def _look(self, now: float, handle: HandleState | None) -> tuple[HandleState, Conditions]:
         """Return a handle that can be believed, and what coupling depends on."""

@@ -105,6 +105,7 @@ _NUMBERS: tuple[tuple[Topic[Any], tuple[tuple[Quantity, Callable[[Rows], Numbers
             (schema.V_REF, _fields("v_ref")),
             (schema.FORCE_CUE, _fields("force")),
             (schema.STATE_AGE, _fields("state_age")),
+            (schema.HANDLE_ENERGY, _fields("port_energy", "dissipated")),
         ),
     ),
     (

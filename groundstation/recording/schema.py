@@ -56,6 +56,13 @@ HANDLE_POSITION = Quantity(
 HANDLE_VELOCITY = Quantity("/handle/velocity", _AXES, "m/s", "servo", "Handle's velocity, handle frame")
 HANDLE_BUTTONS = Quantity("/handle/buttons", ("buttons",), "bits", "on change", "One bit a button")
 HANDLE_FORCE = Quantity("/handle/force", _AXES, "N", "servo", "Force rendered on the hand, handle frame")
+HANDLE_ENERGY = Quantity(
+    "/handle/energy",
+    ("account", "dissipated"),
+    "J",
+    "50 Hz",
+    "What the hand has given and not been given back; what the passivity controller took out of the force",
+)
 
 P_H = Quantity("/pilot/p_h", _POSE, "m, rad", "50 Hz", "p_h: where the hand wants the drone, world")
 P_H_RATE = Quantity("/pilot/p_h_rate", _POSE, "m/s, rad/s", "50 Hz", "ṗ_h: how fast the hand moves it, world")
@@ -131,7 +138,7 @@ LEGS = Quantity("/mission/legs", ("flown", "of"), "legs", "mission", "How far al
 COLLISIONS = Quantity("/mission/collisions", ("collisions",), "contacts", "mission", "With obstacles, so far")
 
 QUANTITIES: tuple[Quantity, ...] = (
-    HANDLE_POSITION, HANDLE_VELOCITY, HANDLE_FORCE, HANDLE_BUTTONS,
+    HANDLE_POSITION, HANDLE_VELOCITY, HANDLE_FORCE, HANDLE_ENERGY, HANDLE_BUTTONS,
     P_H, P_H_RATE, ERROR, V_REF, FORCE_CUE,
     *REFERENCES, *EXECUTED,
     POSITION, VELOCITY, ATTITUDE, BOOT_TIME, BATTERY, VOLTAGE, HEALTH_BITS,

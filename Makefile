@@ -13,7 +13,7 @@ help: ## list the targets
 .venv/.synced: pyproject.toml uv.lock
 	@test -x $(BIN)/python || $(PYTHON) -m venv .venv
 	@test -x $(BIN)/uv || $(BIN)/pip install --quiet uv
-	@$(BIN)/uv sync --locked --quiet
+	@$(BIN)/uv sync --locked --quiet --all-extras
 	@touch $@
 
 fly: .venv/.synced ## start a training flight on the simulated vehicle

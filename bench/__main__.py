@@ -14,7 +14,12 @@ BENCHES = {
     "help": "processor time of --help",
     "start": "from the command to a vehicle that may take off",
     "step_to_wire": "from a step of the handle to the datagram that carries it",
+    "models": "steps per second of the rigid body, beside other simulators",
     "paper": "the paper's mission, headless",
+    "vehicle": "start, memory and share of a core of the simulated vehicle",
+    "fuzz": "a million hostile datagrams at the vehicle",
+    "falcon": "the Falcon's driver: exactness, spoilt bytes, cost of a tick",
+    "servo": "pace of the servo on an emulated device, against a bare C loop",
     "passivity": "energy at the haptic port with delay and loss",
 }
 

@@ -19,6 +19,8 @@ from typing import NamedTuple
 from drivers.device import ZERO3, Vector3
 from drivers.vectors import within
 
+MASS, STIFFNESS = 0.554, 135.0
+
 
 class ArmState(NamedTuple):
     """Where the handle is and how it moves, m, m/s, rad, rad/s, handle frame."""
@@ -38,8 +40,8 @@ class Arm:
         stiffness: Of the arm, N/m.
     """
 
-    mass: float = 0.554
-    stiffness: float = 135.0
+    mass: float = MASS
+    stiffness: float = STIFFNESS
 
     def step(
         self, state: ArmState, dt: float, intention: Vector3, intended_yaw: float, force: Vector3

@@ -1,12 +1,14 @@
-"""A simulated arm on a simulated handle: datagrams tell its intention; it moves, and yields to force."""
+"""A simulated arm on a simulated handle: told what it wants, it moves there, and yields to force."""
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Callable
 
-from drivers.arm import Arm, ArmState, stop
+from drivers.arm import MASS, STIFFNESS, Arm, ArmState, stop
 from drivers.device import ZERO3, DeviceError, DeviceInfo, HandleState, Vector3
+from drivers.motion import Intention, motion_named
 from drivers.stick import StickReceiver
 from drivers.vectors import finite, within
 
@@ -24,20 +26,32 @@ INFO = DeviceInfo(
 
 
 class ScriptedHand:
-    """A hand that follows an intention: `drivers.stick` says how it is told, `drivers.arm` how it moves.
+    """A hand that follows an intention: `drivers.arm` says how it moves.
 
     Args:
-        address: Path of its socket.
+        address: What it wants: a motion's name or a recording (`drivers.motion`), or the path of the socket where
+            it is told (`drivers.stick`).
         clock: Monotonic seconds.
-        arm: Whose arm it is.
+        mass: Of hand and handle, kg.
+        stiffness: Of the arm, N/m.
+
+    Raises:
+        DeviceError: There is no address, the recording is not one, or mass or stiffness is not positive.
     """
 
     def __init__(
-        self, address: str, clock: Callable[[], float] = time.monotonic, arm: Arm | None = None
+        self,
+        address: str,
+        clock: Callable[[], float] = time.monotonic,
+        *,
+        mass: float = MASS,
+        stiffness: float = STIFFNESS,
     ) -> None:
         self._clock = clock
-        self._arm = arm or Arm()
-        self._stick = StickReceiver(address, clock)
+        self._arm = Arm(_positive("mass", mass), _positive("stiffness", stiffness))
+        self._motion = motion_named(address)
+        self._stick = StickReceiver(address, clock) if self._motion is None else None
+        self._began: float | None = None
         self._state = ArmState()
         self._force = ZERO3
         self._moved_t: float | None = None
@@ -48,8 +62,10 @@ class ScriptedHand:
         return INFO
 
     def open(self) -> None:
-        """Listen for intentions; the handle rests at its centre."""
-        self._stick.open()
+        """Begin the motion, or listen for intentions; the handle rests at its centre."""
+        if self._stick is not None:
+            self._stick.open()
+        self._began = self._clock()
         self._state = ArmState()
         self._let_go()
 
@@ -61,19 +77,18 @@ class ScriptedHand:
                 then stays where it is, without force.
         """
         now = self._clock()
-        self._stick.receive()
         try:
-            newest = self._stick.fresh(now)
+            wanted = self._wanted(now)
         except DeviceError:
             self._let_go()
             raise
         dt = 0.0 if self._moved_t is None else max(now - self._moved_t, 0.0)
         self._moved_t = now
-        intention = within(newest.position, WORKSPACE)
-        moved = self._arm.step(self._state, dt, intention, newest.yaw, self._force)
+        intention = within(wanted.position, WORKSPACE)
+        moved = self._arm.step(self._state, dt, intention, wanted.yaw, self._force)
         self._state = stop(moved, WORKSPACE)
         position, velocity, yaw, _ = self._state
-        return HandleState(position, velocity, yaw, newest.buttons, homed=True, device_time=now)
+        return HandleState(position, velocity, yaw, wanted.buttons, homed=True, device_time=now)
 
     def write_force(self, force: Vector3) -> None:
         """Press on the hand, N, until the next call.
@@ -89,9 +104,26 @@ class ScriptedHand:
     def close(self) -> None:
         """Stop listening and let the handle go."""
         self._let_go()
-        self._stick.close()
+        self._began = None
+        if self._stick is not None:
+            self._stick.close()
+
+    def _wanted(self, now: float) -> Intention:
+        if self._stick is not None:
+            self._stick.receive()
+            newest = self._stick.fresh(now)
+            return Intention(newest.position, newest.yaw, newest.buttons)
+        if self._began is None or self._motion is None:
+            raise DeviceError("Scripted hand: it is not open; open it first.")
+        return self._motion(now - self._began)
 
     def _let_go(self) -> None:
         self._force = ZERO3
         self._moved_t = None
         self._state = ArmState(self._state.position, ZERO3, self._state.yaw, 0.0)
+
+
+def _positive(name: str, value: float) -> float:
+    if type(value) not in {int, float} or not 0.0 < value < math.inf:
+        raise DeviceError(f"devices.scripted.{name}: {value!r} is not a positive number; correct it.")
+    return value

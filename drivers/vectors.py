@@ -20,3 +20,9 @@ def within(vector: Vector3, length: float) -> Vector3:
         return vector
     scale = length / norm
     return (x * scale, y * scale, z * scale)
+
+
+def inside(vector: Vector3, limit: float) -> bool:
+    """Say whether no component is NaN or beyond ±`limit`."""
+    # A comparison with NaN is false.
+    return abs(vector[0]) <= limit and abs(vector[1]) <= limit and abs(vector[2]) <= limit

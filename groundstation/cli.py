@@ -58,6 +58,14 @@ def build_parser() -> argparse.ArgumentParser:
         )
     )
     _fill_missions(commands.add_parser("missions", help="list or check missions"))
+    _fill_devices(
+        commands.add_parser(
+            "devices",
+            help="list, try out, calibrate or emulate haptic devices",
+            epilog=_DEVICE_EXAMPLES,
+            formatter_class=_RAW,
+        )
+    )
     completion = commands.add_parser(
         "completion", help="print a shell's completion script", description=_COMPLETION, formatter_class=_RAW
     )
@@ -65,6 +73,13 @@ def build_parser() -> argparse.ArgumentParser:
     return parser
 
 
+_DEVICE_EXAMPLES = """\
+examples:
+  groundstation devices                         what is connected, and what to give to --device
+  groundstation devices test falcon             is it alive, are its axes right, can its force be felt
+  groundstation devices calibrate joystick      centre and travel
+  groundstation devices emulate falcon          a Falcon's double; prints what to give to --device
+"""
 _RAW = argparse.RawDescriptionHelpFormatter
 _COMPLETION = """\
 Print a completion script. For bash:
@@ -100,7 +115,14 @@ def _add_flight(parser: argparse.ArgumentParser) -> None:
         "--airframe", metavar="NAME", help="a preset's name or a .toml file (default: the mission's)"
     )
     sim.add_argument(
-        "--model", choices=("kinematic", "dynamic"), help="motion model (default: the mission's)"
+        "--model",
+        choices=("kinematic", "dynamic", "rigid_body"),
+        help="motion model (default: the mission's)",
+    )
+    sim.add_argument(
+        "--channel",
+        metavar="KEY=VALUE,...",
+        help="what the way to the vehicle does, such as delay=0.15,loss=0.05; see 'python -m sim --help'",
     )
     sim.add_argument(
         "--seed", type=int, metavar="N", help="seed of all that is random (default: 0)", default=0
@@ -123,6 +145,31 @@ def _fill_missions(missions: argparse.ArgumentParser) -> None:
     acts.add_parser("list", help="what comes with the program")
     check = acts.add_parser("check", help="say whether mission files are right")
     check.add_argument("files", nargs="+", type=Path, metavar="FILE")
+
+
+def _fill_devices(devices: argparse.ArgumentParser) -> None:
+    devices.add_argument("--json", action="store_true", help="the list as JSON")
+    devices.add_argument("--config", type=Path, metavar="FILE", help="settings (default: groundstation.toml)")
+    acts = devices.add_subparsers(dest="act", metavar="ACT", help="default: list what is connected")
+    acts.add_parser("list", help="what is connected, and what keeps the rest from being used")
+    for name, words in (
+        ("test", "see the workspace live, feel a force, confirm the axes' signs"),
+        ("calibrate", "measure centre and travel; kept under the serial number"),
+    ):
+        act = acts.add_parser(name, help=words)
+        act.add_argument("device", metavar="NAME[:ADDRESS]", help="as for --device")
+    acts.choices["calibrate"].add_argument(
+        "--forget", metavar="SERIAL", help="remove the calibration of a serial number ('' where it has none)"
+    )
+    emulate = acts.add_parser("emulate", help="run a double of a device, byte for byte, to fly with")
+    emulate.add_argument("name", nargs="?", metavar="NAME", help="which (default: list those there are)")
+    emulate.add_argument(
+        "--hand",
+        default="rest",
+        metavar="WHAT",
+        help="rest, circle, a recorded .csv, or a socket that moves it, see docs/devices.md (default: rest)",
+    )
+    emulate.add_argument("--link", type=Path, metavar="PATH", help="a path that leads to its port")
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
@@ -153,6 +200,8 @@ def _dispatch(parser: argparse.ArgumentParser, asked: argparse.Namespace) -> int
         from groundstation.training import listing
 
         return listing.show() if asked.act == "list" else listing.check(asked.files)
+    if asked.command == "devices":
+        return _devices(asked)
     if asked.command == "review":
         return _review(asked)
     if not asked.sim and not asked.connect:
@@ -161,6 +210,31 @@ def _dispatch(parser: argparse.ArgumentParser, asked: argparse.Namespace) -> int
     from groundstation import fly
 
     return fly.fly(asked)
+
+
+def _devices(asked: argparse.Namespace) -> int:
+    if asked.act == "emulate":
+        from groundstation.devices import emulating
+
+        if asked.name is None:
+            return emulating.listing()
+        return emulating.emulate(asked.name, asked.hand, asked.link)
+    if asked.act in (None, "list"):
+        from groundstation.devices import listing
+
+        return listing.show(as_json=asked.json, config=asked.config)
+    from groundstation.devices import calibrating, making
+
+    if asked.act == "calibrate" and asked.forget is not None:
+        return calibrating.forget(asked.device.partition(":")[0], asked.forget)
+    device = making.raw_device(asked.device, asked.config)
+    if asked.act == "calibrate":
+        return calibrating.calibrate(asked.device.partition(":")[0], device)
+    if not (sys.stdin.isatty() and sys.stdout.isatty()):
+        raise InputError("devices test draws on a terminal; run it in one.")
+    from groundstation.tui import device_test
+
+    return device_test.try_out(making.calibrated(device, asked.device))
 
 
 def _review(asked: argparse.Namespace) -> int:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import tomllib
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 import msgspec
 from msgspec import Meta, Struct
@@ -116,13 +116,18 @@ class Rates(Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class Settings(Struct, frozen=True, forbid_unknown_fields=True):
-    """All settings of the program."""
+    """All settings of the program.
+
+    Attributes:
+        devices: Settings of device drivers, a table for each by its name; the driver knows what is in it.
+    """
 
     mapping: Mapping = Mapping()
     control: Control = Control()
     limits: Limits = Limits()
     safety: Safety = Safety()
     rates: Rates = Rates()
+    devices: dict[str, dict[str, Any]] = {}
 
 
 def load_settings(path: Path | None) -> Settings:

@@ -20,8 +20,10 @@ from groundstation.run_folder import new_run_id, run_folder, sweep_dead_runs
 from groundstation.terminal import terminal_path
 from groundstation.training.mission import Mission, find_mission, load_mission
 from groundstation.vehicle.transport import parse_url
+from sim.scenario import VehicleChoice
 
 FREE_FLIGHT = "free"
+_EMULATED = "emulated:"
 
 
 def fly(asked: argparse.Namespace) -> int:
@@ -61,18 +63,19 @@ def plan(asked: argparse.Namespace) -> Run:
     path = _mission_path(asked)
     mission = _with_vehicle(load_mission(path), asked) if path else None
     if mission:
-        _check_airframe(mission.vehicle.airframe)
-    if asked.device:
-        _check_device(asked.device)
+        _check_vehicle(mission.vehicle, simulated=asked.sim)
     url = asked.connect or f"udpin://127.0.0.1:{free_port()}"
     parse_url(url)
     now = datetime.datetime.now().astimezone()
     run_id = new_run_id()
+    device = _device(asked, run_id)
+    if asked.device:
+        _check_device(device)
     return Run(
         run_id=run_id,
         url=url,
         simulated=asked.sim,
-        device=asked.device or _own_hand(run_id, headless=asked.headless),
+        device=device,
         mission=mission,
         mission_path=str(path.resolve()) if path else "",
         settings=settings,
@@ -87,16 +90,22 @@ def _check(asked: argparse.Namespace) -> None:
     """Refuse combinations that mean nothing, before anything starts."""
     if asked.headless and not asked.mission:
         raise InputError("--headless needs a --mission to fly; see 'groundstation missions list'.")
-    if asked.headless and asked.device:
-        raise InputError("--headless flies with the scripted hand; leave --device out.")
+    if asked.headless and asked.device and not asked.device.startswith(_EMULATED):
+        raise InputError(
+            "--headless flies with the scripted hand; leave --device out, or give it a double: emulated:falcon."
+        )
     if asked.json and not asked.headless:
         raise InputError("--json is the summary of a --headless flight; add --headless.")
     if asked.headless and asked.connect and not asked.confirm_real:
         raise InputError(
             "--headless --connect flies a real vehicle by itself; add --confirm-real if you mean it."
         )
-    if asked.connect and (asked.airframe or asked.model):
-        raise InputError("--airframe and --model are the simulator's; a real vehicle brings its own.")
+    if asked.connect and (asked.airframe or asked.model or asked.channel):
+        raise InputError(
+            "--airframe, --model and --channel are the simulator's; a real vehicle brings its own."
+        )
+    if asked.channel:
+        _check_channel(asked.channel)
     if not asked.headless and not (sys.stdin.isatty() and sys.stdout.isatty()):
         raise InputError("the screen needs a terminal; use --headless --mission NAME without one.")
 
@@ -116,15 +125,27 @@ def _with_vehicle(mission: Mission, asked: argparse.Namespace) -> Mission:
     return msgspec.structs.replace(mission, vehicle=choice)
 
 
-def _check_airframe(name: str) -> None:
+def _check_vehicle(vehicle: VehicleChoice, *, simulated: bool) -> None:
     """Refuse an airframe before anything is started: the simulator flies it, and it says what a contact is."""
-    from sim.airframe import load_airframe
+    from sim.airframe import MODELS, load_airframe
     from sim.scenario import ScenarioError
 
     try:
-        load_airframe(name)
+        airframe = load_airframe(vehicle.airframe)
+        if simulated:
+            MODELS[vehicle.model](airframe)
     except ScenarioError as error:
         raise InputError(str(error)) from error
+
+
+def _check_channel(text: str) -> None:
+    """Refuse a channel that the simulator would."""
+    from sim.conditions import ConditionsError, parse_conditions
+
+    try:
+        parse_conditions(text)
+    except ConditionsError as error:
+        raise InputError(f"--channel: {error}") from error
 
 
 def _check_device(uri: str) -> None:
@@ -135,7 +156,7 @@ def _check_device(uri: str) -> None:
     try:
         make_device(uri)
     except DeviceError as error:
-        raise InputError(f"--device {uri}: {error}") from error
+        raise InputError(f"--device: {error}") from error
 
 
 def _sim_options(asked: argparse.Namespace) -> tuple[str, ...]:
@@ -144,12 +165,19 @@ def _sim_options(asked: argparse.Namespace) -> tuple[str, ...]:
         options += ["--airframe", asked.airframe]
     if asked.model:
         options += ["--model", asked.model]
+    if asked.channel:
+        options += ["--channel", asked.channel]
     return tuple(options)
 
 
-def _own_hand(run_id: str, *, headless: bool) -> str:
-    """Return the device that this program itself moves, by datagrams on a socket in the run's folder."""
-    return f"{'scripted' if headless else 'virtual'}:{run_folder(run_id) / 'hand.sock'}"
+def _device(asked: argparse.Namespace, run_id: str) -> str:
+    """Return the device asked for; one that this program itself moves is told so in the run's folder."""
+    ours = run_folder(run_id) / "hand.sock"
+    if not asked.device:
+        return f"{'scripted' if asked.headless else 'virtual'}:{ours}"
+    if asked.device.startswith(_EMULATED) and "@" not in asked.device:
+        return f"{asked.device}@{ours}"
+    return asked.device
 
 
 def _log_stem(folder: Path, now: datetime.datetime, mission: Mission | None) -> Path:

@@ -13,6 +13,7 @@ from collections.abc import Callable
 from enum import Enum
 
 from drivers.stick import StickSender
+from groundstation import config
 from groundstation.bus import Bus
 from groundstation.console import Console, Snapshot
 from groundstation.errors import InputError
@@ -174,7 +175,7 @@ class Hand:
 
     Args:
         mission: Gives the route and the target.
-        mapping: The rate mapping the pilot flies with.
+        mapping: The mapping the pilot flies with.
         sender: Takes the wish to the scripted hand.
         seed: Of the operator's noise.
         clock: Monotonic seconds.
@@ -183,14 +184,16 @@ class Hand:
     def __init__(
         self,
         mission: Mission,
-        mapping: RateMapping,
+        mapping: config.Mapping,
         sender: StickSender,
         seed: int,
         clock: Callable[[], float],
     ) -> None:
         route, target = mission.route, mission.target
         self._operator = Operator(route, target.position, seed=seed) if target else None
-        self._mapping = mapping
+        self._settings = mapping
+        self._mapping: RateMapping | None = None
+        self._workspace = 0.0
         self._sender = sender
         self._clock = clock
 
@@ -198,7 +201,11 @@ class Hand:
         """Hold the handle where the operator wants it; at the centre while there is nothing to fly."""
         displacement = ((0.0, 0.0, 0.0), 0.0)
         state = view.vehicle
-        if flying and self._operator and state and state.valid:
+        device = view.device
+        if device and device.workspace != self._workspace:
+            self._workspace = device.workspace
+            self._mapping = RateMapping(self._settings, device.workspace)
+        if flying and self._operator and self._mapping and state and state.valid:
             x, y, z, yaw = state.position
             vx, vy, vz, _ = state.velocity
             wish = self._operator.decide(view.t, (x, y, z, yaw), (vx, vy, vz))
@@ -212,14 +219,12 @@ def fly_headless(run: Run, bus: Bus, supervisor: Supervisor, *, as_json: bool, s
     mission = run.mission
     if mission is None:
         raise InputError("--headless needs a --mission to fly.")
-    from drivers.scripted import WORKSPACE
-
     console = Console(bus, "headless")
     follower = MissionFollower(mission, bus)
     director = follower.director
-    sender = StickSender(run.device.partition(":")[2])
-    mapping = RateMapping(run.settings.mapping, WORKSPACE)
-    flight = HeadlessFlight(mission, console, director, Hand(mission, mapping, sender, seed, time.monotonic))
+    sender = StickSender(str(run.hand))
+    hand = Hand(mission, run.settings.mapping, sender, seed, time.monotonic)
+    flight = HeadlessFlight(mission, console, director, hand)
     narrator = Narrator(sys.stderr)
     view = console.snapshot()
     while flight.step is not Step.DONE:

@@ -44,6 +44,15 @@ class Run(Struct, frozen=True):
     terminal: str = ""
 
     @property
+    def hand(self) -> Path | None:
+        """The socket by which this program itself moves the device, or None where a person holds it.
+
+        It lies in the run's own folder, and stands last in the device's address.
+        """
+        path = Path(self.device.replace("@", ":").rpartition(":")[2])
+        return path if path.parent == run_folder(self.run_id) else None
+
+    @property
     def recording(self) -> Path:
         """The Rerun recording's path."""
         return Path(f"{self.log}.rrd")

@@ -18,7 +18,9 @@ def request_realtime() -> str:
     if sys.platform != "linux":
         return "The servo has no real-time priority, which it can ask for on Linux only; ticks may be late."
     try:
-        os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(PRIORITY))
+        # A thread or process that this one starts, as to open a device, is an ordinary one.
+        policy = os.SCHED_FIFO | os.SCHED_RESET_ON_FORK
+        os.sched_setscheduler(0, policy, os.sched_param(PRIORITY))
     except PermissionError:
         return (
             "The servo runs without real-time priority and may be late on a busy machine; to grant it: "

@@ -11,12 +11,12 @@ import gc
 import time
 
 from drivers.device import ZERO3, DeviceError, DeviceInfo, HandleState, HapticDevice
-from drivers.registry import make_device
 from groundstation.bus import Bus
 from groundstation.child import Lifeline, run_child
 from groundstation.clock import Clock, Every, Pacer
+from groundstation.devices.keeper import ABSENT, DeviceKeeper
+from groundstation.devices.making import flight_device
 from groundstation.messages import COMMAND, Command, CommandKind, Phase, Severity
-from groundstation.pilot.device_keeper import ABSENT, DeviceKeeper
 from groundstation.pilot.engagement import (
     Conditions,
     Ending,
@@ -243,7 +243,7 @@ def body(run: Run, bus: Bus, lifeline: Lifeline) -> None:
         SystemExit: There is no such device; in words.
     """
     try:
-        device = make_device(run.device)
+        device = flight_device(run.device, run.settings)
     except DeviceError as error:
         raise SystemExit(str(error)) from error
     servo = Servo(run, bus, device)

@@ -12,7 +12,6 @@ import signal
 import sys
 import time
 from collections.abc import Callable, Iterable
-from pathlib import Path
 from typing import ClassVar
 
 from textual.app import App, SystemCommand
@@ -23,7 +22,6 @@ from groundstation.bus import Bus
 from groundstation.console import Console, Snapshot
 from groundstation.messages import CommandKind, FlightMode, Severity
 from groundstation.run import Run
-from groundstation.run_folder import run_folder
 from groundstation.training.follower import MissionFollower
 from groundstation.tui.acts import ACTS, BY_NAME, Act, Ask, coupled, in_air
 from groundstation.tui.frame import Frame, Reader, Supervisor, workspace
@@ -244,9 +242,7 @@ def fly_on_screen(run: Run, bus: Bus, supervisor: Supervisor) -> int:
     """Show the screen of a run whose processes run; return the exit code."""
     from drivers.stick import StickSender as Sender
 
-    address = Path(run.device.partition(":")[2])
-    # A device whose socket lies in the run's own folder is moved by this program and no other.
-    stick = Sender(str(address)) if address.parent == run_folder(run.run_id) else None
+    stick = Sender(str(run.hand)) if run.hand else None
     try:
         follower = MissionFollower(run.mission, bus) if run.mission else None
         return run_screen(run, Console(bus, "screen"), supervisor, stick, follower)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Callable
 
 from drivers.device import ZERO3, DeviceError, DeviceInfo, HandleState, HapticDevice, Vector3
@@ -22,16 +23,30 @@ ABSENT = DeviceInfo(
 """What there is before a device was first opened."""
 
 
+Start = Callable[[Callable[[], None]], object]
+"""Starts work that may be slow, and returns."""
+
+# Opening that has not ended by then when the keeper is closed is left to the end of the process, s.
+_PATIENCE_S = 2.0
+
+
+def in_thread(work: Callable[[], None]) -> None:
+    """Start work in a thread of its own."""
+    threading.Thread(target=work, name="open device", daemon=True).start()
+
+
 class DeviceKeeper:
     """A device that may come and go.
 
     A silent device is still read every tick, for it may only have paused, and is opened anew at 2 Hz for as
-    long as it stays silent. Opening may be slow; nothing is engaged then.
+    long as it stays silent. Opening may take seconds, as where firmware is loaded: it is done aside, and until it is
+    done there is no device.
 
     Args:
         device: Not yet open.
         tell: Takes a sentence when the device is lost or there again; once for each.
         clock: Monotonic seconds.
+        start: Starts the opening.
 
     Attributes:
         info: What the device is, `ABSENT` before it was first opened.
@@ -39,11 +54,20 @@ class DeviceKeeper:
         read_s, write_s: Longest time a read or a write took since they were last set to zero.
     """
 
-    def __init__(self, device: HapticDevice, tell: Callable[[Severity, str], None], clock: Clock) -> None:
+    def __init__(
+        self,
+        device: HapticDevice,
+        tell: Callable[[Severity, str], None],
+        clock: Clock,
+        start: Start = in_thread,
+    ) -> None:
         self._device = device
         self._tell = tell
         self._clock = clock
-        self._open = False
+        self._start = start
+        self._open = self._opening = False
+        self._opened = threading.Event()
+        self._fault = ""
         self._next_try = -float("inf")
         self._why = self._told = ""
         self.info = ABSENT
@@ -53,6 +77,10 @@ class DeviceKeeper:
 
     def read(self, now: float) -> HandleState | None:
         """Return the handle's state, or None where there is none now; `now` in monotonic s."""
+        if self._opening:
+            if not self._opened.is_set():
+                return None
+            self._take_opened()
         if self._open and (state := self._sample(now)) is not None:
             return state
         if now >= self._next_try:
@@ -73,6 +101,8 @@ class DeviceKeeper:
 
     def close(self) -> None:
         """Render nothing and let the device go."""
+        if self._opening:
+            self._opened.wait(_PATIENCE_S)
         self.write(ZERO3)
         self._device.close()
         self._open = self.present = False
@@ -93,12 +123,28 @@ class DeviceKeeper:
     def _reopen(self) -> None:
         if self._open:
             self._complain()
-        self._device.close()
-        self._open = False
+        self._open, self._opening = False, True
+        self._opened.clear()
+        self._start(self._open_device)
+        if self._opened.is_set():
+            self._take_opened()
+
+    def _open_device(self) -> None:
+        """Open the device, aside. Until `_opened` is set, nothing else touches it."""
+        self._fault = "The device's driver failed; see the pilot's log."
         try:
+            self._device.close()
             self._device.open()
+            self._fault = ""
         except DeviceError as error:
-            self._why = str(error)
+            self._fault = str(error)
+        finally:
+            self._opened.set()
+
+    def _take_opened(self) -> None:
+        self._opening = False
+        if self._fault:
+            self._why = self._fault
             self._complain()
             return
         self._open = True

@@ -8,8 +8,8 @@ import pytest
 from drivers.device import ZERO3, Vector3
 from drivers.stick import StickSender
 from drivers.virtual import VirtualHandle
+from groundstation.devices.keeper import ABSENT, RETRY_S, DeviceKeeper
 from groundstation.messages import Severity
-from groundstation.pilot.device_keeper import ABSENT, RETRY_S, DeviceKeeper
 
 
 class Bench:
@@ -18,7 +18,9 @@ class Bench:
         self.path = str(path)
         self.said: list[tuple[Severity, str]] = []
         self.device = VirtualHandle(self.path, lambda: self.now)
-        self.keeper = DeviceKeeper(self.device, lambda *said: self.said.append(said), lambda: self.now)
+        self.keeper = DeviceKeeper(
+            self.device, lambda *said: self.said.append(said), lambda: self.now, lambda work: work()
+        )
         self.sender = StickSender(self.path)
 
     def close(self) -> None:
@@ -104,3 +106,36 @@ def test_a_device_that_cannot_be_opened_is_tried_again(tmp_path: Path) -> None:
     came = bench.run(3 * RETRY_S, sending=True)[-1]
     bench.close()
     assert came
+
+
+def test_a_device_that_is_slow_to_open_holds_up_nothing(tmp_path: Path) -> None:
+    """Firmware takes seconds to load: until it is there, reading says at once that there is no device."""
+    bench = Bench(tmp_path / "hand.sock")
+    aside = []
+    slow = DeviceKeeper(bench.device, lambda *_: None, lambda: bench.now, aside.append)
+    bench.sender.send((0.0, 0.0, 0.0), 0.0, 0, bench.now)
+    assert [slow.read(bench.now + 0.01 * tick) for tick in range(200)] == [None] * 200
+    assert len(aside) == 1
+    aside[0]()
+    slow.read(bench.now)
+    assert slow.info.name == "On-screen stick"
+    bench.sender.send((0.0, 0.0, 0.0), 0.0, 0, bench.now)
+    assert slow.read(bench.now) is not None
+    slow.close()
+    bench.close()
+
+
+def test_a_driver_that_breaks_while_opening_is_told_of(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    bench = Bench(tmp_path / "hand.sock")
+
+    def broken() -> None:
+        raise RuntimeError("not a DeviceError")
+
+    monkeypatch.setattr(bench.device, "open", broken)
+    with pytest.raises(RuntimeError):
+        bench.keeper.read(bench.now)
+    assert bench.keeper.read(bench.now + 0.1) is None
+    assert "driver failed" in bench.said[-1][1]
+    bench.close()

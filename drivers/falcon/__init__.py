@@ -1,0 +1,1 @@
+"""The Novint Falcon: three legs, three motors, one serial line."""

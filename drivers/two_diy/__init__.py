@@ -1,0 +1,1 @@
+"""The Haply 2DIY: a planar five-bar linkage on a serial port."""

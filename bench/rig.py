@@ -125,14 +125,17 @@ class Program:
     Args:
         arguments: Its command line.
         columns, rows: Size of the terminal.
+        under: Command that starts it, as `setpriv` does with fewer rights.
     """
 
-    def __init__(self, *arguments: str, columns: int = 200, rows: int = 60) -> None:
+    def __init__(
+        self, *arguments: str, columns: int = 200, rows: int = 60, under: tuple[str, ...] = ()
+    ) -> None:
         self.started = time.monotonic()
         controller, terminal = pty.openpty()
         _resize(terminal, columns, rows)
         self.process = subprocess.Popen(
-            [sys.executable, "-m", "groundstation.cli", *arguments],
+            [*under, sys.executable, "-m", "groundstation.cli", *arguments],
             stdin=terminal, stdout=terminal, stderr=terminal, cwd=ROOT, start_new_session=True,
             env=os.environ | {"TERM": "xterm-256color", "COLORTERM": "truecolor"},
         )  # fmt: skip

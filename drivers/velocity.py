@@ -26,7 +26,8 @@ class Windowed:
     """
 
     def __init__(self, noise: float, longest: int = 20) -> None:
-        self._noise = noise
+        # A sample exactly on the bound is within it, whatever rounding makes of it.
+        self._noise = noise * (1.0 + 1e-6)
         self._past: deque[tuple[float, float]] = deque(maxlen=longest)
 
     def add(self, t: float, place: float) -> float:

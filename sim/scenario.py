@@ -20,6 +20,8 @@ Coordinate = Annotated[float, Meta(ge=-10_000, le=10_000)]
 Point = tuple[Coordinate, Coordinate, Coordinate]
 Size = tuple[Positive, Positive, Positive]
 Name = Annotated[str, Meta(min_length=1, max_length=48, pattern=r"^[\w .\-]+$")]
+WindSpeed = Annotated[float, Meta(ge=-40, le=40)]
+Air = tuple[WindSpeed, WindSpeed, WindSpeed]
 
 
 class ScenarioError(Exception):
@@ -59,7 +61,82 @@ class Sphere(Struct, frozen=True, forbid_unknown_fields=True, tag_field="shape",
     radius: Positive
 
 
-Obstacle = Box | Cylinder | Sphere
+class Wall(
+    Struct,
+    frozen=True,
+    forbid_unknown_fields=True,
+    tag_field="shape",
+    tag="wall",
+    rename={"start": "from", "end": "to"},
+):
+    """A straight wall that stands on the ground.
+
+    Attributes:
+        name: Shown on the map and in collision messages.
+        start, end: `from` and `to` in the file: the ends of its middle line, x and y, m.
+        height: m.
+        thickness: m.
+    """
+
+    name: Name
+    start: tuple[Coordinate, Coordinate]
+    end: tuple[Coordinate, Coordinate]
+    height: Positive
+    thickness: Positive = 0.1
+
+    def __post_init__(self) -> None:
+        if self.start == self.end:
+            raise ValueError("from and to are the same point; a wall has a length")
+
+
+class Gate(Struct, frozen=True, forbid_unknown_fields=True, tag_field="shape", tag="gate"):
+    """A frame around an opening to fly through.
+
+    Attributes:
+        name: Shown on the map and in collision messages.
+        center: Of the opening, m.
+        width, height: Of the opening, m.
+        yaw_deg: The way through it, counter-clockwise from east.
+        frame: Thickness of the frame, in depth too, m.
+        sill: It has a beam under the opening; without it the posts stand on the ground.
+    """
+
+    name: Name
+    center: Point
+    width: Positive
+    height: Positive
+    yaw_deg: Coordinate = 0.0
+    frame: Positive = 0.1
+    sill: bool = True
+
+    def __post_init__(self) -> None:
+        if self.center[2] < 0.5 * self.height:
+            raise ValueError("the opening reaches below the ground; raise center or lower height")
+
+
+Primitive = Box | Cylinder | Sphere
+Obstacle = Primitive | Wall | Gate
+
+
+class Pad(Struct, frozen=True, forbid_unknown_fields=True):
+    """A place to land on, drawn but not solid: `position` of its middle, `radius`, m."""
+
+    name: Name
+    position: Point
+    radius: Positive = 0.5
+
+
+class Contact(Struct, frozen=True, forbid_unknown_fields=True):
+    """What a collision with an obstacle does.
+
+    Attributes:
+        restitution: Share of the speed into a surface that comes back, 0 (stops) to 1. The default is an estimate:
+            a rotor guard and a hull give a little.
+        crash_speed: Hit harder than this, m/s, the motors stop. The default is a drop from half a metre.
+    """
+
+    restitution: Annotated[float, Meta(ge=0, le=1)] = 0.2
+    crash_speed: Positive = 3.0
 
 
 class Gust(Struct, frozen=True, forbid_unknown_fields=True):
@@ -73,14 +150,41 @@ class Gust(Struct, frozen=True, forbid_unknown_fields=True):
 
     start_s: NonNegative
     duration_s: Positive
-    velocity: Point
+    velocity: Air
+
+
+class Turbulence(Struct, frozen=True, forbid_unknown_fields=True):
+    """Continuous turbulence of MIL-F-8785C (MIL-HDBK-1797), low altitude; see `sim.environment.turbulence`.
+
+    Attributes:
+        model: Shape of the spectrum.
+        intensity: Standard deviation of the vertical gusts, m/s: a tenth of the wind 6 m (20 ft) above the ground.
+            The standard's light, moderate and severe are 0.8, 1.5 and 2.3.
+    """
+
+    model: Literal["dryden", "von_karman"] = "dryden"
+    intensity: Annotated[float, Meta(ge=0, le=10)] = 0.8
 
 
 class Wind(Struct, frozen=True, forbid_unknown_fields=True):
-    """Wind: a constant part, m/s ENU (where the air goes to), and gusts."""
+    """Wind: a constant part, m/s ENU (where the air goes to), gusts, and turbulence."""
 
-    mean: Point = (0.0, 0.0, 0.0)
+    mean: Air = (0.0, 0.0, 0.0)
     gust: tuple[Gust, ...] = ()
+    turbulence: Turbulence = Turbulence(intensity=0.0)
+
+
+class Charge(Struct, frozen=True, forbid_unknown_fields=True):
+    """The battery at the start: what `remaining` of it, 0 to 1, and how many times as fast it is drained."""
+
+    remaining: Annotated[float, Meta(gt=0, le=1)] = 1.0
+    drain: Annotated[float, Meta(ge=0, le=1000)] = 1.0
+
+
+class EstimateChoice(Struct, frozen=True, forbid_unknown_fields=True):
+    """How well the vehicle knows where it is: one of the qualities in `sim.estimator`."""
+
+    quality: Literal["ideal", "rtk", "gps"] = "ideal"
 
 
 class VehicleChoice(Struct, frozen=True, forbid_unknown_fields=True):
@@ -88,12 +192,13 @@ class VehicleChoice(Struct, frozen=True, forbid_unknown_fields=True):
 
     Attributes:
         airframe: Name of a preset in `sim/airframes/`, or a path to a file like them.
-        model: `kinematic` (equations 1-3, ideal) or `dynamic` (velocity response χ).
+        model: `kinematic` (equations 1-3, ideal), `dynamic` (velocity response χ) or `rigid_body` (six degrees of
+            freedom with its own controllers).
         yaw_deg: Heading on the pad, counter-clockwise from east.
     """
 
     airframe: str = "matrice_100"
-    model: Literal["kinematic", "dynamic"] = "dynamic"
+    model: Literal["kinematic", "dynamic", "rigid_body"] = "dynamic"
     yaw_deg: Coordinate = 0.0
 
 
@@ -103,6 +208,14 @@ class Scenario(Struct, frozen=True):
     vehicle: VehicleChoice = VehicleChoice()
     wind: Wind = Wind()
     obstacle: tuple[Obstacle, ...] = ()
+    pad: tuple[Pad, ...] = ()
+    contact: Contact = Contact()
+    battery: Charge = Charge()
+    estimate: EstimateChoice = EstimateChoice()
+
+
+# Where no mission says otherwise: an empty world, and a vehicle that knows where it is as well as most do.
+STAND_ALONE = Scenario(estimate=EstimateChoice("gps"))
 
 
 def read_toml(path: Path) -> dict[str, object]:

@@ -36,6 +36,15 @@ def test_help_names_every_way_to_start_and_imports_nothing_heavy():
     assert done.returncode == 0, done.stderr
 
 
+def test_the_simulators_models_may_be_asked_for():
+    from typing import get_args
+
+    from sim.airframe import Model
+
+    action = next(action for action in build_parser()._actions if action.dest == "model")
+    assert action.choices == get_args(Model)
+
+
 def test_version_and_help_end_well():
     assert run("--version").stdout.startswith("groundstation ")
     done = run("--help")
@@ -68,6 +77,15 @@ def test_nothing_asked_prints_help_and_is_bad_input():
         (["--connect", "udpin://0.0.0.0:1", "--airframe", "x"], "the simulator's"),
         (["--sim", "--headless", "--mission", "hover", "--config", "/nowhere.toml"], "cannot be read"),
         (["--sim", "--headless", "--mission", "hover", "--airframe", "zeppelin"], "zeppelin"),
+        (
+            ["--sim", "--headless", "--mission", "hover", "--model", "rigid_body"],
+            "choose kinematic or dynamic",
+        ),
+        (
+            ["--sim", "--headless", "--mission", "hover", "--channel", "loss=2"],
+            "--channel: loss=2: '2' is not",
+        ),
+        (["--connect", "udpin://0.0.0.0:1", "--channel", "delay=1"], "the simulator's"),
         (["--sim", "--headless", "--mission", "hover", "--logs", "/proc/nowhere"], "logs"),
         (["--sim", "--bogus"], "unrecognized"),
         (["--connect", CONNECT, "--headless", "--mission", "ODD", "--confirm-real"], "no such airframe"),

@@ -119,4 +119,6 @@ def test_all_that_drivers_find_is_listed_and_one_that_fails_hides_no_other(other
 def test_our_own_drivers_all_look_for_devices_or_have_none_to_look_for():
     for name in BUILT_IN:
         module = importlib.import_module(driver_module(name))
-        assert hasattr(module, "discover") != (name in {"emulated", "scripted", "virtual", "virtual-joystick"})
+        assert hasattr(module, "discover") != (
+            name in {"emulated", "scripted", "virtual", "virtual-joystick"}
+        )

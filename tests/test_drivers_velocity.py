@@ -6,7 +6,7 @@ import math
 from itertools import pairwise
 
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from drivers.velocity import Windowed
@@ -18,6 +18,8 @@ def follow(motion, ticks=400, quantum=1.0, tick=1e-3):
 
 
 @given(st.floats(-5_000, 5_000))
+@example(125.0)
+@example(1500.0)
 def test_a_steady_motion_is_known_to_a_count_a_window(speed):
     """The line through 20 intervals of 1 ms is off by at most one count in 20 ms."""
     for velocity in follow(lambda t: speed * t)[30:]:

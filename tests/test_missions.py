@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from groundstation.config import ConfigError, Settings, load_settings
 from groundstation.training.mission import MISSIONS_FOLDER, MissionError, find_mission, load_mission
-from sim.scenario import ScenarioError, load_scenario
+from sim.scenario import Scenario, ScenarioError, load_scenario
 
 MINIMAL = 'schema = 1\nname = "m"\ntitle = "t"\n'
 
@@ -26,6 +26,53 @@ def test_every_mission_that_comes_with_the_program_is_right(path):
     mission = load_mission(path)
     assert mission.name == path.stem
     assert load_scenario(path).obstacle == mission.obstacle
+
+
+WORLD = """
+[vehicle]
+model = "rigid_body"
+[wind]
+mean = [2.0, -1.0, 0.0]
+[wind.turbulence]
+model = "von_karman"
+intensity = 0.8
+[contact]
+restitution = 0.3
+crash_speed = 2.0
+[battery]
+remaining = 0.35
+drain = 2.0
+[estimate]
+quality = "gps"
+[[obstacle]]
+shape = "wall"
+name = "wall"
+from = [3.0, -2.0]
+to = [3.0, 2.0]
+height = 2.5
+[[obstacle]]
+shape = "gate"
+name = "first gate"
+center = [6.0, 0.0, 2.0]
+yaw_deg = 30.0
+width = 1.6
+height = 1.4
+sill = false
+[[pad]]
+name = "roof"
+position = [9.0, 1.0, 3.0]
+radius = 0.6
+"""
+
+
+def test_every_table_of_the_world_reaches_the_simulator(tmp_path):
+    path = written(tmp_path, MINIMAL + WORLD)
+    mission, scenario = load_mission(path), load_scenario(path)
+    for field in ("vehicle", "wind", "obstacle", "pad", "contact", "battery", "estimate"):
+        assert getattr(scenario, field) == getattr(mission, field) != getattr(Scenario(), field)
+    wall, gate = scenario.obstacle
+    assert (wall.start, wall.end, wall.thickness) == ((3.0, -2.0), (3.0, 2.0), 0.1)
+    assert not gate.sill
 
 
 def test_missions_are_found_by_name_and_by_path():
@@ -50,6 +97,23 @@ def test_missions_are_found_by_name_and_by_path():
         (MINIMAL + "[[obstacle]]\nshape = 'pyramid'\nname = 'p'", "obstacle[0].shape"),
         (MINIMAL + "[[obstacle]]\nshape='sphere'\nname='s'\ncenter=[0,0,1]\nradius=-1", "obstacle[0].radius"),
         (MINIMAL + "[[obstacle]]\nshape='sphere'\nname='s'\ncenter=[0,0,1]\nradius=1\n" * 2, "two are named"),
+        (MINIMAL + "[[obstacle]]\nshape='wall'\nname='w'\nfrom=[0,1]\nto=[0,1]\nheight=2", "same point"),
+        (
+            MINIMAL + "[[obstacle]]\nshape='wall'\nname='w'\nfrom=[0,1,0]\nto=[0,2,0]\nheight=2",
+            "obstacle[0].from",
+        ),
+        (
+            MINIMAL + "[[obstacle]]\nshape='gate'\nname='g'\ncenter=[5,0,1]\nwidth=2\nheight=3",
+            "below the ground",
+        ),
+        (MINIMAL + "[[obstacle]]\nshape='gate'\nname='g'\ncenter=[5,0,2]\nwidth=2\nheight=3\nsill=1", "sill"),
+        (MINIMAL + "[[pad]]\nname='p'\nposition=[0,0,0]\n" * 2, "two are named"),
+        (MINIMAL + "[wind]\nmean=[90.0,0.0,0.0]", "wind.mean[0]"),
+        (MINIMAL + "[wind.turbulence]\nmodel='storm'", "wind.turbulence.model"),
+        (MINIMAL + "[wind.turbulence]\nintensity=-1.0", "wind.turbulence.intensity"),
+        (MINIMAL + "[battery]\nremaining=0.0", "battery.remaining"),
+        (MINIMAL + "[estimate]\nquality='perfect'", "estimate.quality"),
+        (MINIMAL + "[contact]\nrestitution=1.5", "contact.restitution"),
         ("not toml at all", "not valid TOML"),
         ("x = " + "[" * 5000, "not valid TOML"),
     ],
@@ -101,6 +165,10 @@ KEYS = [
     "vehicle",
     "wind",
     "obstacle",
+    "pad",
+    "contact",
+    "battery",
+    "estimate",
     "takeoff_altitude_m",
 ]
 

@@ -97,7 +97,7 @@ class Bench:
         self.world = World(self.run_id, socket)
         self.bus = Bus(self.run_id, "pilot")
         self.device = VirtualHandle(socket, lambda: self.now)
-        self.servo = Servo(self.run_, self.bus, self.device, lambda: self.now)
+        self.servo = Servo(self.run_, self.bus, self.device, lambda: self.now, lambda work: work())
         self.stick: tuple[float, float, float] | None = (0.0, 0.0, 0.0)
         self.vehicle = True
 

@@ -6,7 +6,8 @@ import pytest
 from pymavlink.dialects.v20 import common as m
 from sim_wire import BODY_NED, DT, LOCAL_NED, NAN, POSITION_YAW, VELOCITY_YAW_RATE, Wire
 
-from sim.autopilot.navigator import Mode
+from sim import frames
+from sim.autopilot.modes import Mode
 
 
 @pytest.mark.parametrize("yaw_deg", [0.0, 90.0, -135.0])
@@ -51,8 +52,10 @@ def test_positions_and_yaw_in_the_world():
         ({"frame": LOCAL_NED, "mask": POSITION_YAW, "xyz": (0, NAN, 0)}, "not a finite number"),
         ({"frame": LOCAL_NED, "mask": POSITION_YAW, "yaw": -math.inf}, "not a finite number"),
         ({"frame": 7, "mask": VELOCITY_YAW_RATE}, "frame 7 is not LOCAL_NED or BODY_NED"),
-        ({"frame": LOCAL_NED, "mask": 0xFFF}, "neither position nor velocity"),
-        ({"frame": LOCAL_NED, "mask": VELOCITY_YAW_RATE & ~64}, "accelerations are not simulated"),
+        ({"frame": LOCAL_NED, "mask": 0xFFF}, "neither position, velocity nor acceleration"),
+        ({"frame": LOCAL_NED, "mask": VELOCITY_YAW_RATE & ~64 | 512}, "forces are not simulated"),
+        ({"frame": LOCAL_NED, "mask": POSITION_YAW, "xyz": (3e38, 0, 0)}, "out of range"),
+        ({"frame": LOCAL_NED, "mask": VELOCITY_YAW_RATE & ~64, "a": (NAN, 0, 0)}, "not a finite number"),
         ({"frame": BODY_NED, "mask": POSITION_YAW}, "positions in BODY_NED"),
     ],
 )
@@ -73,19 +76,56 @@ def test_what_the_mask_ignores_may_be_anything():
 def test_a_setpoint_gone_bad_in_flight_counts_as_lost():
     wire = Wire().take_off().fly(1.0, BODY_NED, VELOCITY_YAW_RATE, v=(1.0, 0.0, 0.0))
     wire.run(1.1, lambda: wire.setpoint(BODY_NED, VELOCITY_YAW_RATE, v=(NAN, 0, 0)))
-    assert wire.sim.autopilot.mode is Mode.HOLD
+    assert wire.sim.autopilot.mode is not Mode.OFFBOARD
     assert all(math.isfinite(value) for value in (*wire.sim.p, *wire.sim.v))
 
 
 def test_offboard_is_lost_one_second_after_the_last_setpoint():
-    wire = Wire().take_off().fly(1.0, BODY_NED, VELOCITY_YAW_RATE, v=(1.0, 0.0, 0.0))
-    wire.run(0.99)
+    wire = Wire().take_off()
+    assert wire.sim.autopilot.parameters.set("COM_OBL_RC_ACT", 5)
+    wire.fly(1.0, BODY_NED, VELOCITY_YAW_RATE, v=(1.0, 0.0, 0.0))
+    wire.run(0.97)
     assert wire.sim.autopilot.mode is Mode.OFFBOARD
-    wire.run(0.03)
+    wire.run(0.06)
     assert wire.sim.autopilot.mode is Mode.HOLD
-    wire.run(1.1)
+    wire.run(2.1)
     assert wire.newest("HEARTBEAT").system_status == m.MAV_STATE_CRITICAL
     assert wire.newest("HEARTBEAT").custom_mode == 4 << 16 | 3 << 24
+    assert wire.heard_mode() == (4 << 16 | 3 << 24, 6 << 16)
+
+
+def test_accelerations_are_followed():
+    wire = Wire().take_off()
+    mask = 0xFFF & ~(64 | 128 | 256 | 512 | 2048)
+    wire.fly(2.0, LOCAL_NED, mask, a=(0.5, 0.0, 0.0))
+    assert wire.sim.v[1] == pytest.approx(1.0, abs=0.1)
+
+
+def test_a_place_on_the_globe_is_flown_to():
+    wire = Wire().take_off()
+    latitude, longitude, _ = frames.geodetic(5.0, -3.0, 0.0)
+
+    def send(frame=6, height=4.0, mask=POSITION_YAW):
+        place = (round(latitude * 1e7), round(longitude * 1e7), height)
+        wire.send(
+            m.MAVLink_set_position_target_global_int_message(
+                0, 1, 1, frame, mask, *place, *[0.0] * 6, math.radians(90), 0.0
+            )
+        )
+
+    send()
+    assert wire.command(m.MAV_CMD_DO_SET_MODE, 1, 6, 0) == m.MAV_RESULT_ACCEPTED
+    wire.run(12.0, send)
+    assert wire.sim.p == pytest.approx((5.0, -3.0, 4.0, 0.0), abs=0.1)
+    wire.run(4.0, lambda: send(5, 488.0 + 6.0))
+    assert wire.sim.p[2] == pytest.approx(6.0, abs=0.2)
+    told = wire.newest("POSITION_TARGET_GLOBAL_INT")
+    assert told.lat_int == pytest.approx(round(latitude * 1e7), abs=1)
+    assert wire.newest("POSITION_TARGET_LOCAL_NED").z == pytest.approx(-6.0)
+    for bad in ({"frame": 1}, {"height": NAN}):
+        send(**bad)
+    wire.run(DT)
+    assert "Setpoint refused: frame 1 is not GLOBAL_INT or GLOBAL_RELATIVE_ALT_INT" in wire.texts()
 
 
 def test_setpoints_of_other_kinds_are_refused():

@@ -8,9 +8,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from sim.collision import SKIN, Collider
-from sim.scenario import Box, Cylinder, Sphere
-from sim.world import World
+from sim.environment.collision import SKIN, Collider, bounced, without
+from sim.environment.shapes import flown_through, primitives
+from sim.environment.world import World
+from sim.scenario import Box, Cylinder, Gate, Sphere, Wall
 
 POINTS = st.tuples(*[st.floats(-6, 6)] * 3)
 SIZES = st.floats(0.2, 4)
@@ -19,6 +20,20 @@ BOXES = st.builds(Box, st.just("box"), CENTERS, st.tuples(SIZES, SIZES, SIZES), 
 CYLINDERS = st.builds(Cylinder, st.just("cylinder"), CENTERS, SIZES, SIZES)
 SPHERES = st.builds(Sphere, st.just("sphere"), CENTERS, SIZES)
 SOLIDS = st.one_of(BOXES, CYLINDERS, SPHERES)
+FLAT = st.tuples(*[st.floats(-5, 5)] * 2)
+WALLS = st.builds(Wall, st.just("wall"), FLAT, FLAT.map(lambda end: (end[0] + 11.0, end[1])), SIZES, SIZES)
+GATES = st.builds(
+    Gate, st.just("gate"), st.tuples(*[st.floats(-2, 2)] * 2, st.floats(2, 3)), SIZES, SIZES,
+    st.floats(-180, 180), st.floats(0.02, 0.5), st.booleans(),
+)  # fmt: skip
+OBSTACLES = st.one_of(SOLIDS, WALLS, GATES)
+HEADINGS = st.tuples(st.floats(-math.pi, math.pi), st.floats(-1.5, 1.5)).map(
+    lambda angles: (
+        math.cos(angles[0]) * math.cos(angles[1]),
+        math.sin(angles[0]) * math.cos(angles[1]),
+        math.sin(angles[1]),
+    )
+)
 GRID = np.linspace(-0.5, 0.5, 41)
 
 
@@ -103,10 +118,88 @@ def test_an_empty_world_is_infinitely_clear_and_a_floor_is_below():
     assert World(floor=True).clearance((5.0, 5.0, 1.5)) == (1.5, "floor")
 
 
+@given(OBSTACLES, POINTS)
+def test_the_nearest_point_is_on_the_surface_at_the_distance(obstacle, point):
+    world = World([obstacle])
+    nearest = world.nearest(point)
+    assert math.dist(point, nearest.point) == pytest.approx(abs(nearest.distance), abs=1e-9)
+    assert any(abs(solid.distance(*nearest.point)) < 1e-9 for solid in world.solids)
+
+
+def test_in_an_empty_world_the_nearest_point_is_the_point():
+    assert World().nearest((1.0, 2.0, 3.0)).point == (1.0, 2.0, 3.0)
+
+
 def test_a_ray_ends_at_the_first_surface_or_its_limit():
     world = World([Box("crate", (0.0, 0.0, 0.5), (2.0, 2.0, 1.0))])
-    assert world.ray((0.3, 0.2, 4.0), (0.0, 0.0, -1.0), 10.0) == pytest.approx(3.0, abs=2e-3)
+    assert world.ray((0.3, 0.2, 4.0), (0.0, 0.0, -1.0), 10.0) == pytest.approx(3.0)
     assert world.ray((5.0, 0.2, 4.0), (0.0, 0.0, -1.0), 4.0) == 4.0
+    assert World(floor=True).ray((5.0, 0.2, 4.0), (0.6, 0.0, -0.8), 10.0) == pytest.approx(5.0)
+    assert World(floor=True).ray((5.0, 0.2, 4.0), (0.6, 0.0, 0.8), 10.0) == 10.0
+    assert World().ray((0.0, 0.0, 1.0), (1.0, 0.0, 0.0), 7.0) == 7.0
+
+
+@given(st.lists(OBSTACLES, max_size=3), POINTS, HEADINGS)
+def test_a_ray_goes_through_free_space_and_ends_on_a_surface(obstacles, origin, heading):
+    world = World(obstacles)
+    length = world.ray(origin, heading, 20.0)
+
+    def clearance(along):
+        return world.clearance(tuple(o + along * h for o, h in zip(origin, heading, strict=True)))[0]
+
+    if length == 0.0:
+        assert clearance(0.0) <= 1e-9
+        return
+    assert all(clearance(length * share) > -1e-7 for share in np.linspace(0.0, 1.0, 60))
+    assert length == 20.0 or abs(clearance(length)) < 1e-7
+
+
+# Composites
+
+
+def test_a_wall_is_as_long_high_and_thick_as_it_says():
+    world = World([Wall("wall", (1.0, 1.0), (4.0, 5.0), 2.0, 0.2)])
+    assert world.clearance((2.5, 3.0, 1.0))[0] == pytest.approx(-0.1)
+    assert world.clearance((1.0 - 0.6, 1.0 - 0.8, 1.0))[0] == pytest.approx(1.0)
+    assert world.clearance((2.5, 3.0, 5.0)) == (pytest.approx(3.0), "wall")
+    assert world.clearance((2.5 - 0.8, 3.0 + 0.6, 1.0))[0] == pytest.approx(0.9)
+
+
+@given(GATES, st.floats(-0.499, 0.499), st.floats(-0.499, 0.499), st.floats(-3, 3))
+def test_the_opening_of_a_gate_is_open_as_wide_and_high_as_it_says(gate, across, up, along):
+    yaw = math.radians(gate.yaw_deg)
+    point = (
+        gate.center[0] + math.cos(yaw) * along - math.sin(yaw) * across * gate.width,
+        gate.center[1] + math.sin(yaw) * along + math.cos(yaw) * across * gate.width,
+        gate.center[2] + up * gate.height,
+    )
+    distance, name = World([gate]).clearance(point)
+    assert name == "gate"
+    assert distance > 0.0
+    edges = [(0.5 - abs(across)) * gate.width, (0.5 - up) * gate.height]
+    edges += [(0.5 + up) * gate.height] if gate.sill else []
+    if abs(along) <= 0.5 * gate.frame:
+        assert distance == pytest.approx(min(edges), abs=1e-9)
+
+
+def test_a_gate_has_a_sill_or_posts_down_to_the_ground():
+    hanging, standing = (Gate("g", (0.0, 0.0, 2.0), 1.0, 1.0, sill=sill) for sill in (True, False))
+    assert len(primitives(hanging)) == 4
+    assert len(primitives(standing)) == 3
+    assert World([hanging]).clearance((0.0, 0.0, 1.45))[0] == pytest.approx(-0.05)
+    assert World([hanging]).clearance((0.0, 0.55, 0.5))[0] > 0.8
+    assert World([standing]).clearance((0.0, 0.0, 1.45))[0] == pytest.approx(0.5)
+    assert World([standing]).clearance((0.0, 0.55, 0.5))[0] == pytest.approx(-0.05)
+
+
+def test_a_gate_is_flown_through_from_either_side_and_not_past():
+    gate = Gate("g", (5.0, 1.0, 2.0), 2.0, 1.0, yaw_deg=90.0)
+    assert flown_through(gate, (5.5, 0.0, 2.0), (5.5, 3.0, 2.0))
+    assert flown_through(gate, (5.5, 3.0, 2.0), (5.5, 0.0, 2.0))
+    assert not flown_through(gate, (5.5, 0.0, 2.0), (5.5, 0.9, 2.0))
+    assert not flown_through(gate, (6.5, 0.0, 2.0), (6.5, 3.0, 2.0))
+    assert not flown_through(gate, (5.5, 0.0, 2.6), (5.5, 3.0, 2.6))
+    assert not flown_through(gate, (5.5, 0.0, 2.0), (5.5, 0.0, 2.0))
 
 
 # Collision
@@ -126,7 +219,7 @@ def test_no_step_is_long_enough_to_pass_a_thin_wall(radius, length, slant):
 
 
 @settings(deadline=None)
-@given(st.lists(SOLIDS, min_size=1, max_size=4), st.lists(POINTS, min_size=2, max_size=30))
+@given(st.lists(OBSTACLES, min_size=1, max_size=4), st.lists(POINTS, min_size=2, max_size=30))
 def test_however_it_moves_the_sphere_stays_outside(solids, targets):
     radius = 0.3
     world = World(solids)
@@ -144,7 +237,7 @@ def test_a_contact_is_told_once_until_it_is_left():
     position = (4.0, 0.0, 0.0)
     for step in itertools.chain([0.05] * 40, [-0.001] * 10, [0.05] * 10, [-0.05] * 10, [0.05] * 20):
         position = collider.travel(position, (position[0] + step, position[1], position[2]))
-        struck += collider.struck
+        struck += [strike.name for strike in collider.struck]
     assert struck == ["wall", "wall"]
 
 
@@ -164,3 +257,54 @@ def test_far_from_everything_a_motion_is_the_motion():
     collider = Collider(World([WALL]), 0.5)
     assert collider.travel((0.0, 0.0, 0.0), (1.0, 2.0, -3.0)) == (1.0, 2.0, -3.0)
     assert not collider.normals
+
+
+@given(st.floats(0.02, 0.3), st.floats(-0.49, 0.49), st.booleans())
+def test_at_50_metres_a_second_a_gate_lets_through_its_opening_and_nothing_else(frame, aside, sill):
+    """One of 250 steps a second is 0.2 m then: up to ten times as long as the frame is thick."""
+    gate = Gate("gate", (5.0, 0.0, 3.0), 2.0, 2.0, frame=frame, sill=sill)
+    radius, step = 0.3, 50.0 * 0.004
+
+    def flown(y, z):
+        collider = Collider(World([gate]), radius)
+        position, struck = (0.0, y, z), []
+        for _ in range(50):
+            position = collider.travel(position, (position[0] + step, position[1], position[2]))
+            struck += collider.struck
+        return position, struck
+
+    position, struck = flown(aside, 3.0)
+    assert (position[0], struck) == (pytest.approx(10.0), [])
+    for y, z in ((1.0 + 0.5 * frame, 3.0), (-1.0 - 0.5 * frame, 3.0), (aside, 4.0 + 0.5 * frame)):
+        position, struck = flown(y, z)
+        assert position[0] == pytest.approx(5.0 - 0.5 * frame - radius, abs=2 * SKIN)
+        assert [strike.name for strike in struck] == ["gate"]
+        assert struck[0].normal == pytest.approx((-1.0, 0.0, 0.0))
+
+
+def test_a_gate_touched_at_two_of_its_parts_is_one_contact():
+    collider = Collider(World([Gate("gate", (5.0, 0.0, 3.0), 0.5, 0.5)]), 0.3)
+    position = collider.travel((4.0, 0.0, 3.0), (6.0, 0.0, 3.0))
+    assert position[0] < 5.0
+    assert [strike.name for strike in collider.struck] == ["gate"]
+    collider.travel(position, (5.0, 0.1, 3.1))
+    assert not collider.struck
+
+
+speeds = st.tuples(*[st.floats(-20, 20)] * 3)
+
+
+@given(OBSTACLES, speeds, st.floats(0, 1))
+def test_a_bounce_gives_back_what_restitution_says_and_leaves_the_rest(obstacle, velocity, restitution):
+    collider = Collider(World([obstacle]), 0.3)
+    collider.travel((11.0, 0.0, 11.0), primitives(obstacle)[0].center)
+    assert collider.struck
+    (name, normal), *_ = collider.struck
+    after = bounced(velocity, collider.struck[:1], restitution)
+    into = sum(v * n for v, n in zip(velocity, normal, strict=True))
+    out = sum(v * n for v, n in zip(after, normal, strict=True))
+    assert name == obstacle.name
+    assert out == pytest.approx(-restitution * into if into < -0.2 else into, abs=1e-9)
+    along = [v - into * n for v, n in zip(velocity, normal, strict=True)]
+    assert [v - out * n for v, n in zip(after, normal, strict=True)] == pytest.approx(along, abs=1e-9)
+    assert math.hypot(*without(after, [normal])) <= math.hypot(*velocity) + 1e-9

@@ -8,8 +8,8 @@ from hypothesis import strategies as st
 
 from groundstation.training.director import Director, Stage
 from groundstation.training.mission import Criteria, Mission, Target
-from sim.scenario import Sphere
-from sim.world import World
+from sim.environment.world import World
+from sim.scenario import Gate, Sphere
 
 BALL = Sphere(name="ball", center=(5.0, 0.0, 2.0), radius=1.0)
 
@@ -119,3 +119,19 @@ def test_any_flight_is_followed(path):
     assert it.figures.path >= 0
     assert it.shortcomings() or it.stage is Stage.DONE
     assert 0 <= it.leg <= it.legs
+
+
+def test_every_gate_is_to_be_flown_through():
+    gates = tuple(Gate(name, (x, 0.0, 2.0), 2.0, 2.0) for name, x in (("first", 2.0), ("second", 6.0)))
+    it = director(obstacles=gates)
+    fly(it, [(0.0, 0.0, 2.0), (4.0, 0.0, 2.0), (4.0, 3.0, 2.0), (8.0, 3.0, 2.0)])
+    words = "; ".join(it.shortcomings())
+    assert "gate 'second' was not flown through" in words
+    assert "first" not in words
+
+
+def test_trembling_at_an_obstacle_is_one_contact():
+    it = director()
+    t = fly(it, [(0.0, 0.0, 2.0)])
+    fly(it, [(3.7, 0.0, 2.0), (3.65, 0.0, 2.0)] * 5, t=t)
+    assert it.figures.collisions == 1

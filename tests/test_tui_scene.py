@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+import msgspec
 import numpy as np
 import pytest
 from canned_flight import canned_run
@@ -13,7 +14,8 @@ from hypothesis import strategies as st
 from groundstation.tui import scene
 from groundstation.tui.canvas import Canvas
 from groundstation.tui.theme import Tone
-from sim.scenario import Box, Cylinder, Sphere
+from sim.environment.shapes import extent
+from sim.scenario import Box, Cylinder, Gate, Pad, Sphere, Wall
 
 MISSION = canned_run().mission
 metres = st.floats(-500.0, 500.0)
@@ -37,7 +39,7 @@ def test_the_view_shows_the_start_and_all_points(points, width, height):
 def test_the_view_shows_the_whole_mission(width, height):
     view = scene.framing(MISSION, [], width, height)
     assert view.holds([(point[0], point[1]) for point in MISSION.route])
-    assert view.holds([(obstacle.center[0], obstacle.center[1]) for obstacle in MISSION.obstacle])
+    assert view.holds([corner[:2] for obstacle in MISSION.obstacle for corner in extent(obstacle)])
     assert view.holds([MISSION.target.position[:2]])
 
 
@@ -63,6 +65,37 @@ def test_both_axes_have_one_scale():
 def test_an_obstacle_is_beside_the_vehicle_only_at_its_altitude(obstacle, reaches, above):
     assert scene.beside(obstacle, reaches)
     assert not scene.beside(obstacle, above)
+
+
+def with_world(*obstacles, pad=()):
+    return msgspec.structs.replace(MISSION, obstacle=obstacles, pad=pad, route=(), target=None)
+
+
+def test_a_gates_posts_are_solid_and_its_opening_is_crossed_by_lines_only():
+    mission = with_world(Gate("g", (5.0, 0.0, 2.0), 3.0, 3.0, frame=0.4))
+    assert scene.levels(mission, 2.0) == (True, True, False, False)
+    view = scene.framing(mission, [], 160, 100)
+    canvas = Canvas(80, 25)
+    scene.draw_world(canvas, view, mission, 2.0)
+    x, post, middle = (int(view.x(5.0)), int(view.y(1.7)), int(view.y(0.0)))
+    assert canvas._tones[post // 4, x // 2] == Tone.BESIDE
+    assert canvas._tones[middle // 4, x // 2] != Tone.BESIDE
+
+
+def test_walls_and_pads_are_within_the_view_and_drawn():
+    mission = with_world(
+        Wall("long", (-2.0, 12.0), (30.0, 12.0), 2.0), pad=(Pad("roof", (0.0, -15.0, 3.0), 1.0),)
+    )
+    view = scene.framing(mission, [], 160, 100)
+    assert view.holds([(-2.0, 11.95), (30.0, 12.05), (-1.0, -16.0), (1.0, -14.0)])
+    bare, full = Canvas(80, 25), Canvas(80, 25)
+    scene.draw_world(bare, view, with_world(mission.obstacle[0]), 1.0)
+    scene.draw_world(full, view, mission, 1.0)
+    rows, columns = np.nonzero(bare._dots != full._dots)
+    assert rows.mean() == pytest.approx(float(view.y(-15.0)), abs=1.5)
+    assert columns.mean() == pytest.approx(float(view.x(0.0)), abs=1.5)
+    scene.label_obstacles(full, view, mission)
+    assert any("long" in "".join(text for text, _ in row) for row in full.to_rows())
 
 
 def test_obstacles_beside_the_vehicle_are_drawn_solid_others_as_outlines():

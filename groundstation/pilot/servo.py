@@ -14,7 +14,7 @@ from drivers.device import ZERO3, DeviceError, DeviceInfo, HandleState, HapticDe
 from groundstation.bus import Bus
 from groundstation.child import Lifeline, run_child
 from groundstation.clock import Clock, Every, Pacer
-from groundstation.devices.keeper import ABSENT, DeviceKeeper
+from groundstation.devices.keeper import ABSENT, DeviceKeeper, Start, in_thread
 from groundstation.devices.making import flight_device
 from groundstation.messages import COMMAND, Command, CommandKind, Phase, Severity
 from groundstation.pilot.engagement import (
@@ -62,16 +62,24 @@ class Servo:
         bus: Where records come from and go to.
         device: Not yet open.
         clock: Monotonic seconds.
+        start: Starts the device's opening.
 
     Attributes:
         rate: Ticks a second that the device is made for, Hz.
     """
 
-    def __init__(self, run: Run, bus: Bus, device: HapticDevice, clock: Clock = time.monotonic) -> None:
+    def __init__(
+        self,
+        run: Run,
+        bus: Bus,
+        device: HapticDevice,
+        clock: Clock = time.monotonic,
+        start: Start = in_thread,
+    ) -> None:
         self._settings = run.settings
         self._bus = bus
         self._clock = clock
-        self._keeper = DeviceKeeper(device, bus.event, clock)
+        self._keeper = DeviceKeeper(device, bus.event, clock, start)
         self._feed = VehicleFeed(bus)
         self._commands = bus.subscriber(COMMAND)
         self._outbox = Outbox(bus)

@@ -80,7 +80,10 @@ def _page(run: Run, device: DeviceReport | None) -> Still:
     }
     if mission and run.simulated:
         facts["Model"] = f"{mission.vehicle.airframe}, {mission.vehicle.model}"
-        facts["Wind"] = f"{_words(mission.wind.mean)} m/s, {len(mission.wind.gust)} gusts"
+        wind = mission.wind
+        facts["Wind"] = (
+            f"{_words(wind.mean)} m/s, {len(wind.gust)} gusts, turbulence {wind.turbulence.intensity:g} m/s"
+        )
     lines = [f"# {mission.title if mission else 'Free flight'}", "", mission.teaches if mission else ""]
     lines += _table("", facts)
     for name, settings in msgspec.to_builtins(run.settings).items():

@@ -1,4 +1,4 @@
-"""What stands still in the scene: ground, obstacles, route and target; and how what moves looks."""
+"""What stands still in the scene: ground, pads, obstacles, route and target; and how what moves looks."""
 
 from __future__ import annotations
 
@@ -12,7 +12,9 @@ from groundstation.recording import palette, schema
 from groundstation.recording.airframe import quadrotor
 from groundstation.recording.item import Numbers, Still
 from groundstation.training.mission import Mission
-from sim.scenario import Box, Cylinder, Obstacle
+from sim.environment.shapes import extent as reached
+from sim.environment.shapes import primitives
+from sim.scenario import Box, Cylinder, Pad, Primitive
 
 _MARGIN_M = 4.0
 # The Chase view fits this around the vehicle.
@@ -34,7 +36,12 @@ def static_scene(mission: Mission | None) -> Iterator[Still]:
         schema.PAD, rr.Cylinders3D(lengths=[0.02], radii=[0.5], colors=[palette.BLUE], fill_mode=_SOLID)
     )
     for obstacle in mission.obstacle if mission else ():
-        yield Still(f"{schema.OBSTACLES}/{obstacle.name.replace(' ', '_')}", _obstacle(obstacle))
+        parts = primitives(obstacle)
+        for number, part in enumerate(parts):
+            path = f"{schema.OBSTACLES}/{_entity(obstacle.name)}"
+            yield Still(path if len(parts) == 1 else f"{path}/{number}", _solid(part))
+    for pad in mission.pad if mission else ():
+        yield Still(f"{schema.PAD}/{_entity(pad.name)}", _pad(pad))
     if mission and mission.route:
         yield Still(schema.ROUTE, _route(mission))
     if mission and mission.target:
@@ -72,7 +79,8 @@ def extent(mission: Mission | None) -> tuple[Numbers, Numbers]:
     """Return the lower and upper corner of what a mission is about, world, m."""
     points: list[Sequence[float]] = [(0.0, 0.0, 0.0)]
     if mission:
-        points += [obstacle.center for obstacle in mission.obstacle]
+        points += [corner for obstacle in mission.obstacle for corner in reached(obstacle)]
+        points += [pad.position for pad in mission.pad]
         points += mission.route
         points += [mission.target.position] if mission.target else []
     return np.min(points, axis=0), np.max(points, axis=0)
@@ -96,32 +104,48 @@ def _route(mission: Mission) -> rr.LineStrips3D:
     return rr.LineStrips3D([[start, *mission.route, *end]], colors=[palette.GREEN], radii=[-0.75])
 
 
-def _obstacle(obstacle: Obstacle) -> rr.AsComponents:
-    if isinstance(obstacle, Box):
+def _entity(name: str) -> str:
+    return name.replace(" ", "_")
+
+
+def _pad(pad: Pad) -> rr.Cylinders3D:
+    return rr.Cylinders3D(
+        centers=[pad.position],
+        lengths=[0.02],
+        radii=[pad.radius],
+        colors=[palette.BLUE],
+        fill_mode=_SOLID,
+        labels=[pad.name],
+        show_labels=False,
+    )
+
+
+def _solid(part: Primitive) -> rr.AsComponents:
+    if isinstance(part, Box):
         return rr.Boxes3D(
-            centers=[obstacle.center],
-            sizes=[obstacle.size],
-            rotation_axis_angles=[rr.RotationAxisAngle((0, 0, 1), radians=math.radians(obstacle.yaw_deg))],
+            centers=[part.center],
+            sizes=[part.size],
+            rotation_axis_angles=[rr.RotationAxisAngle((0, 0, 1), radians=math.radians(part.yaw_deg))],
             colors=[_OBSTACLE],
             fill_mode=_SOLID,
-            labels=[obstacle.name],
+            labels=[part.name],
             show_labels=False,
         )
-    if isinstance(obstacle, Cylinder):
+    if isinstance(part, Cylinder):
         return rr.Cylinders3D(
-            centers=[obstacle.center],
-            lengths=[obstacle.height],
-            radii=[obstacle.radius],
+            centers=[part.center],
+            lengths=[part.height],
+            radii=[part.radius],
             colors=[_OBSTACLE],
             fill_mode=_SOLID,
-            labels=[obstacle.name],
+            labels=[part.name],
             show_labels=False,
         )
     return rr.Ellipsoids3D(
-        centers=[obstacle.center],
-        radii=[obstacle.radius],
+        centers=[part.center],
+        radii=[part.radius],
         colors=[_OBSTACLE],
         fill_mode=_SOLID,
-        labels=[obstacle.name],
+        labels=[part.name],
         show_labels=False,
     )

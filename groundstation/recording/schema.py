@@ -267,7 +267,10 @@ ARROW_M_PER_N = 0.25
 
 SCENE: tuple[tuple[str, str], ...] = (
     (f"{GROUND}, {PAD}", "the plane z = 0 and the place the vehicle starts from"),
-    (f"{OBSTACLES}/NAME, {ROUTE}, {TARGET}", "the mission's obstacles, route and target"),
+    (
+        f"{OBSTACLES}/NAME, {PAD}/NAME, {ROUTE}, {TARGET}",
+        "the mission's obstacles (a gate's parts below its name), pads, route and target",
+    ),
     (
         VEHICLE_POSE,
         "the vehicle's pose; `airframe` below it is a quadrotor 0.65 m wide, whatever it really is",

@@ -12,10 +12,13 @@ from enum import Enum
 from groundstation.frames import Vector3
 from groundstation.messages import MissionProgress, fit
 from groundstation.training.mission import Mission
-from sim.world import World
+from sim.environment.collision import RELEASE
+from sim.environment.shapes import flown_through
+from sim.environment.world import World
+from sim.scenario import Gate
 
 STAGE_TEXT = 48
-# How much nearer than the vehicle's radius still counts as the same touch, m.
+# What is nearer than the vehicle's radius and this much is touched, m.
 _CONTACT_MARGIN_M = 0.02
 
 
@@ -77,6 +80,10 @@ class Director:
     _took_off_t: float = 0.0
     _held_since: float | None = None
     _touching: str = ""
+    _gates: list[Gate] = field(default_factory=list)
+
+    def __post_init__(self) -> None:
+        self._gates = [obstacle for obstacle in self.mission.obstacle if isinstance(obstacle, Gate)]
 
     @property
     def legs(self) -> int:
@@ -94,6 +101,7 @@ class Director:
         self.figures.duration = t - self._took_off_t
         if self._last is not None:
             self.figures.path += math.dist(self._last, position)
+            self._gates = [gate for gate in self._gates if not flown_through(gate, self._last, position)]
         self._last = position
         self._watch_obstacles(position)
         if not armed:
@@ -126,6 +134,7 @@ class Director:
             found.append("the target was not reached and held")
         elif figures.final_error > criteria.final_error_m:
             found.append(f"final error {figures.final_error:.2f} m is over {criteria.final_error_m:.2f} m")
+        found += [f"gate {gate.name!r} was not flown through" for gate in self._gates]
         if figures.collisions > criteria.max_collisions:
             found.append(f"{figures.collisions} collisions, {criteria.max_collisions} forgiven")
         if figures.duration > criteria.time_limit_s:
@@ -148,7 +157,8 @@ class Director:
     def _watch_obstacles(self, position: Vector3) -> None:
         distance, name = self.world.clearance(position)
         self.clearance = distance - self.radius
-        touching = name if self.clearance < _CONTACT_MARGIN_M else ""
+        within = RELEASE if name == self._touching else _CONTACT_MARGIN_M
+        touching = name if self.clearance < within else ""
         if touching and touching != self._touching:
             self.figures.collisions += 1
         self._touching = touching

@@ -8,7 +8,7 @@ from groundstation.messages import MISSION_PROGRESS, Phase
 from groundstation.training.director import Director
 from groundstation.training.mission import Mission
 from sim.airframe import load_airframe
-from sim.world import World
+from sim.environment.world import World
 
 
 class MissionFollower:

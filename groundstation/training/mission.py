@@ -13,9 +13,13 @@ from msgspec import Meta, Struct
 
 from groundstation.errors import InputError
 from sim.scenario import (
+    Charge,
+    Contact,
+    EstimateChoice,
     Name,
     NonNegative,
     Obstacle,
+    Pad,
     Point,
     Positive,
     ScenarioError,
@@ -76,7 +80,8 @@ class Mission(Struct, frozen=True, forbid_unknown_fields=True):
         takeoff_altitude_m: Where take-off ends, above the pad.
         route: Points the reference hand flies through before the target, world, m.
         target: Where it leads, or none: then the flight only takes off, holds and lands.
-        vehicle, wind, obstacle: The world, see `sim.scenario`.
+        vehicle, wind, obstacle, pad, contact, battery, estimate: The world, see `sim.scenario`. Gates are there to be
+            flown through, each at least once.
     """
 
     schema: Literal[1]
@@ -90,6 +95,10 @@ class Mission(Struct, frozen=True, forbid_unknown_fields=True):
     vehicle: VehicleChoice = VehicleChoice()
     wind: Wind = Wind()
     obstacle: tuple[Obstacle, ...] = ()
+    pad: tuple[Pad, ...] = ()
+    contact: Contact = Contact()
+    battery: Charge = Charge()
+    estimate: EstimateChoice = EstimateChoice()
 
 
 def load_mission(path: Path) -> Mission:
@@ -104,9 +113,10 @@ def load_mission(path: Path) -> Mission:
         raise MissionError(str(error)) from error
     except msgspec.ValidationError as error:
         raise MissionError(f"{path}: {error_sentence(error)}") from error
-    names = [obstacle.name for obstacle in mission.obstacle]
-    if twice := next((name for name in names if names.count(name) > 1), None):
-        raise MissionError(f"{path}: obstacle: two are named {twice!r}; give each its own name.")
+    for table, things in (("obstacle", mission.obstacle), ("pad", mission.pad)):
+        names = [thing.name for thing in things]
+        if twice := next((name for name in names if names.count(name) > 1), None):
+            raise MissionError(f"{path}: {table}: two are named {twice!r}; give each its own name.")
     return mission
 
 

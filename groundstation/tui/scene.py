@@ -15,7 +15,8 @@ from numpy.typing import NDArray
 from groundstation.training.mission import Mission
 from groundstation.tui.canvas import Canvas
 from groundstation.tui.theme import Tone
-from sim.scenario import Box, Cylinder, Obstacle, Sphere
+from sim.environment.shapes import extent, half_height, primitives, reach
+from sim.scenario import Box, Pad, Primitive
 
 Floats = NDArray[np.float64]
 
@@ -80,10 +81,10 @@ def framing(mission: Mission | None, points: Sequence[tuple[float, float]], widt
     if mission is not None:
         seen += [(point[0], point[1]) for point in mission.route]
         seen += [(mission.target.position[0], mission.target.position[1])] if mission.target else []
-        for obstacle in mission.obstacle:
-            reach = _reach(obstacle)
-            east, north, _ = obstacle.center
-            seen += [(east - reach, north - reach), (east + reach, north + reach)]
+        seen += [corner[:2] for obstacle in mission.obstacle for corner in extent(obstacle)]
+        for pad in mission.pad:
+            east, north, _ = pad.position
+            seen += [(east - pad.radius, north - pad.radius), (east + pad.radius, north + pad.radius)]
     easts, norths = [point[0] for point in seen], [point[1] for point in seen]
     spans = (max(easts) - min(easts) + 2 * MARGIN_M, max(norths) - min(norths) + 2 * MARGIN_M)
     least = max(spans[0] / max(width - 6, 1), spans[1] / max(height - 6, 1))
@@ -92,20 +93,25 @@ def framing(mission: Mission | None, points: Sequence[tuple[float, float]], widt
 
 
 def draw_world(canvas: Canvas, view: View, mission: Mission | None, altitude: float) -> None:
-    """Draw what stands still: grid, start, obstacles, route and target.
+    """Draw what stands still: grid, start, pads, obstacles, route and target.
 
     Args:
         canvas: Drawn on.
         view: What it shows.
         mission: What is flown, or None.
-        altitude: The vehicle's, m: obstacles that reach it are drawn solid, others as outlines.
+        altitude: The vehicle's, m: what reaches it is drawn solid, the rest as outlines; so a gate's posts are solid
+            and its beams are lines.
     """
     _grid(canvas, view)
     _cross(canvas, float(view.x(0.0)), float(view.y(0.0)), 2, Tone.MUTED)
     if mission is None:
         return
-    for obstacle in mission.obstacle:
-        _obstacle(canvas, view, obstacle, solid=beside(obstacle, altitude))
+    for pad in mission.pad:
+        _pad(canvas, view, pad)
+    for solid, part in sorted(
+        ((beside(part, altitude), part) for part in _parts(mission)), key=lambda each: each[0]
+    ):
+        _solid(canvas, view, part, solid=solid)
     if mission.route:
         way = np.array([(0.0, 0.0), *((east, north) for east, north, _ in mission.route)])
         canvas.line(view.x(way[:, 0]), view.y(way[:, 1]), Tone.ROUTE, gap=4)
@@ -120,16 +126,14 @@ def draw_world(canvas: Canvas, view: View, mission: Mission | None, altitude: fl
         _cross(canvas, float(view.x(east)), float(view.y(north)), 1, Tone.TARGET)
 
 
-def beside(obstacle: Obstacle, altitude: float) -> bool:
-    """Say whether an obstacle is at the vehicle's altitude, a margin of half a metre included."""
-    margin = 0.5
-    if isinstance(obstacle, Sphere):
-        half = obstacle.radius
-    elif isinstance(obstacle, Cylinder):
-        half = obstacle.height / 2
-    else:
-        half = obstacle.size[2] / 2
-    return abs(altitude - obstacle.center[2]) <= half + margin
+def beside(part: Primitive, altitude: float) -> bool:
+    """Say whether a part of an obstacle is at the vehicle's altitude, a margin of half a metre included."""
+    return abs(altitude - part.center[2]) <= half_height(part) + 0.5
+
+
+def levels(mission: Mission | None, altitude: float) -> tuple[bool, ...]:
+    """Return for each part of the obstacles whether it is at the vehicle's altitude: it decides how the map looks."""
+    return tuple(beside(part, altitude) for part in _parts(mission)) if mission else ()
 
 
 def draw_trail(canvas: Canvas, view: View, points: Floats) -> None:
@@ -197,16 +201,13 @@ def draw_legend(canvas: Canvas, view: View) -> None:
 def label_obstacles(canvas: Canvas, view: View, mission: Mission | None) -> None:
     """Write the obstacles' names under them."""
     for obstacle in mission.obstacle if mission else ():
-        column = int(view.x(obstacle.center[0]) / 2) - len(obstacle.name) // 2
-        row = int((view.y(obstacle.center[1]) + _reach(obstacle) / view.scale) / 4) + 1
-        canvas.letters(column, row, obstacle.name, Tone.MUTED)
+        (west, south, _), (east, _, _) = extent(obstacle)
+        column = int(view.x(0.5 * (west + east)) / 2) - len(obstacle.name) // 2
+        canvas.letters(column, int(view.y(south) / 4) + 1, obstacle.name, Tone.MUTED)
 
 
-def _reach(obstacle: Obstacle) -> float:
-    """Return how far an obstacle reaches from its centre in the plane, m."""
-    return (
-        math.hypot(obstacle.size[0], obstacle.size[1]) / 2 if isinstance(obstacle, Box) else obstacle.radius
-    )
+def _parts(mission: Mission) -> list[Primitive]:
+    return [part for obstacle in mission.obstacle for part in primitives(obstacle)]
 
 
 def _grid(canvas: Canvas, view: View) -> None:
@@ -221,35 +222,40 @@ def _grid(canvas: Canvas, view: View) -> None:
     canvas.plot(view.x(grid_east.ravel()), view.y(grid_north.ravel()), Tone.GRID)
 
 
-def _obstacle(canvas: Canvas, view: View, obstacle: Obstacle, *, solid: bool) -> None:
+def _solid(canvas: Canvas, view: View, part: Primitive, *, solid: bool) -> None:
     tone = Tone.BESIDE if solid else Tone.OBSTACLE
-    east, north, _ = obstacle.center
-    reach = _reach(obstacle)
+    east, north, _ = part.center
     if solid:
-        steps = np.arange(-reach, reach + view.scale, view.scale)
+        steps = np.arange(-reach(part), reach(part) + view.scale, view.scale)
         x, y = (axis.ravel() for axis in np.meshgrid(steps, steps))
-        inside = _inside(obstacle, x, y)
+        inside = _inside(part, x, y)
         columns, rows = np.rint(view.x(east + x[inside])), np.rint(view.y(north + y[inside]))
         hatched = (columns + rows) % 2 == 0
         canvas.plot(columns[hatched], rows[hatched], tone)
-    if isinstance(obstacle, Box):
-        yaw, (length, width, _) = math.radians(obstacle.yaw_deg), obstacle.size
+    if isinstance(part, Box):
+        yaw, (length, width, _) = math.radians(part.yaw_deg), part.size
         corners = np.array([(1, 1), (-1, 1), (-1, -1), (1, -1), (1, 1)]) * (length / 2, width / 2)
         x = east + math.cos(yaw) * corners[:, 0] - math.sin(yaw) * corners[:, 1]
         y = north + math.sin(yaw) * corners[:, 0] + math.cos(yaw) * corners[:, 1]
         canvas.line(view.x(x), view.y(y), tone)
     else:
-        _ring(canvas, view, (east, north, obstacle.radius), tone)
+        _ring(canvas, view, (east, north, part.radius), tone)
 
 
-def _inside(obstacle: Obstacle, x: Floats, y: Floats) -> NDArray[np.bool_]:
-    """Say which points, relative to its centre, are within an obstacle's outline."""
-    if not isinstance(obstacle, Box):
-        return x**2 + y**2 <= obstacle.radius**2
-    yaw = math.radians(obstacle.yaw_deg)
+def _inside(part: Primitive, x: Floats, y: Floats) -> NDArray[np.bool_]:
+    """Say which points, relative to its centre, are within a part's outline."""
+    if not isinstance(part, Box):
+        return x**2 + y**2 <= part.radius**2
+    yaw = math.radians(part.yaw_deg)
     along = math.cos(yaw) * x + math.sin(yaw) * y
     across = math.cos(yaw) * y - math.sin(yaw) * x
-    return (abs(along) <= obstacle.size[0] / 2) & (abs(across) <= obstacle.size[1] / 2)
+    return (abs(along) <= part.size[0] / 2) & (abs(across) <= part.size[1] / 2)
+
+
+def _pad(canvas: Canvas, view: View, pad: Pad) -> None:
+    east, north, _ = pad.position
+    _ring(canvas, view, (east, north, max(pad.radius, 3.0 * view.scale)), Tone.MUTED)
+    _cross(canvas, float(view.x(east)), float(view.y(north)), 1, Tone.MUTED)
 
 
 def _ring(canvas: Canvas, view: View, circle: tuple[float, float, float], tone: Tone, gap: int = 1) -> None:

@@ -6,57 +6,20 @@ ENU, vehicle FLU, SI units. Names in capitals are PX4's parameters.
 
 from __future__ import annotations
 
-from collections import deque
-from enum import IntEnum
-from math import inf
-from typing import NamedTuple
-
-from sim.airframe import Airframe
+from sim.autopilot.arming import arming_obstacles
+from sim.autopilot.conduct import Conduct
+from sim.autopilot.fence import zone_fault
 from sim.autopilot.guidance import Target
-from sim.autopilot.navigator import Mode, Navigator
-from sim.autopilot.parameters import Parameters
-from sim.battery import Battery
+from sim.autopilot.mission import first_waypoint_distance, jump_fault
+from sim.autopilot.modes import Mode
+from sim.autopilot.notices import ACCEPTED, Severity, Verdict
+from sim.autopilot.plan import Leg, Zone
+from sim.autopilot.sticks import Sticks
 from sim.kinematics import Vector3, Vector4
-from sim.models.motion import Motion
-
-# PX4 wants setpoints at 2 Hz or more before it enters Offboard.
-STREAM_S = 0.5
-_LANDED_AFTER_S = 1.0
-_REFUSALS_EVERY_S = 1.0
-_NOTICES_KEPT = 64
 
 
-class Severity(IntEnum):
-    """Of a notice, numbered like MAV_SEVERITY."""
-
-    EMERGENCY = 0
-    CRITICAL = 2
-    WARNING = 4
-    INFO = 6
-
-
-class Notice(NamedTuple):
-    """Something said to the operator."""
-
-    severity: Severity
-    text: str
-
-
-class Verdict(NamedTuple):
-    """Whether an act was accepted; `why` says what forbids it."""
-
-    ok: bool
-    why: str = ""
-
-
-ACCEPTED = Verdict(ok=True)
-_LOSS_ACTIONS = {3: Mode.RETURN, 4: Mode.LAND, 5: Mode.HOLD}
-_LINK_LOSS_ACTIONS = {1: Mode.HOLD, 2: Mode.RETURN, 3: Mode.LAND}
-_TERMINATE, _DISARM = 6, 7
-
-
-class Autopilot:
-    """The autopilot of one vehicle.
+class Autopilot(Conduct):
+    """The autopilot of one vehicle: what may be asked of it.
 
     Args:
         airframe: The vehicle's limits.
@@ -65,69 +28,34 @@ class Autopilot:
         start: Where the vehicle stands, and home.
     """
 
-    def __init__(self, airframe: Airframe, motion: Motion, battery: Battery, start: Vector4) -> None:
-        self.parameters = Parameters()
-        self.battery = battery
-        self.notices: deque[Notice] = deque(maxlen=_NOTICES_KEPT)
-        self.navigator = Navigator(airframe, motion, self.parameters, start)
-        self.t = 0.0
-        self.armed = False
-        self.landed = True
-        self.failsafe = False
-        self.terminated = False
-        self.took_off_t: float | None = None
-        self._p = start
-        self._contact_s = _LANDED_AFTER_S
-        self.armed_t = 0.0
-        self._flown = False
-        self._setpoint_t = self._refused_t = -inf
-        self._ground_station_t: float | None = None
-        self._warned = self._alarmed = False
-
-    @property
-    def mode(self) -> Mode:
-        """Who or what steers."""
-        return self.navigator.mode
-
-    @property
-    def home(self) -> Vector4:
-        """Where the vehicle was last armed, world."""
-        return self.navigator.home
-
-    # Acts of the operator
-
     def arm(self, *, force: bool = False) -> Verdict:
         """Start the motors."""
         if self.armed:
             return ACCEPTED
         if (why := self.arming_obstacle()) and (self.terminated or not force):
-            return self._denied("Arming", why)
+            return self._notices.denied("Arming", why)
         self.armed = True
-        self.failsafe = self._flown = False
         self.armed_t = self.t
-        self.navigator.home = self._p
-        self.navigator.enter(self.mode)
+        self._guard.reset()
+        self._watch.arm()
+        if not self._home_set:
+            self._navigator.flight.home = self._navigator.flight.p
+        self._navigator.enter(self.mode)
         self.say(Severity.INFO, "Armed by external command")
         return ACCEPTED
 
+    def arming_obstacles(self) -> list[str]:
+        """Return all that forbids arming now."""
+        return arming_obstacles(self.wanted, self._watch.state(terminated=self.terminated), self.parameters)
+
     def arming_obstacle(self) -> str:
         """Return what forbids arming now, or ""."""
-        if self.terminated:
-            return "flight was terminated; restart the vehicle"
-        if self.battery.remaining <= self.parameters["BAT_CRIT_THR"]:
-            return f"battery at {self.battery.remaining:.0%}; charge it"
-        if not self.landed:
-            return "not on the ground"
-        if self.mode is Mode.OFFBOARD and not self.streaming:
-            return "Offboard without setpoints; switch to Hold"
-        if self.mode in (Mode.LAND, Mode.RETURN):
-            return f"{self.mode.value} cannot take off; switch to Hold"
-        return ""
+        return next(iter(self.arming_obstacles()), "")
 
     def disarm(self, *, force: bool = False) -> Verdict:
         """Stop the motors; in the air only with force."""
         if self.armed and not self.landed and not force:
-            return self._denied("Disarming", "not landed")
+            return self._notices.denied("Disarming", "not landed")
         self._stop_motors("Disarmed by external command")
         return ACCEPTED
 
@@ -136,153 +64,102 @@ class Autopilot:
         self._stop_motors("Kill: motors stopped")
         return ACCEPTED
 
-    def terminate(self) -> Verdict:
-        """Stop the motors for good."""
-        self.terminated = True
-        self.say(Severity.EMERGENCY, "Flight termination active")
-        self._stop_motors("Motors stopped")
-        return ACCEPTED
-
     def set_mode(self, mode: Mode) -> Verdict:
-        """Change who steers."""
-        if mode is Mode.OFFBOARD and not self.streaming:
-            return self._denied(
-                "Offboard", "no setpoints are coming; stream them at 2 Hz or more before the switch"
-            )
-        self.failsafe = False
-        if mode is not self.mode:
-            self.navigator.enter(mode)
+        """Change who steers. While disarmed, a mode that needs a position may be chosen without one."""
+        if mode is Mode.TAKEOFF:
+            return self.take_off()
+        if mode is Mode.DESCEND:
+            return self._notices.denied(mode.value, "only failsafes choose it")
+        if why := self._obstacle(mode):
+            return self._notices.denied(mode.value, why)
+        if mode is Mode.MISSION:
+            self._warn_of_far_mission()
+        self._want(mode)
         return ACCEPTED
 
     def take_off(self, height: float | None = None) -> Verdict:
         """Climb to a height above home, m: MIS_TAKEOFF_ALT unless given. A disarmed vehicle does so once armed."""
-        self.failsafe = False
-        self.navigator.takeoff_height = height
-        self.navigator.enter(Mode.TAKEOFF)
+        if why := self._obstacle(Mode.TAKEOFF):
+            return self._notices.denied(Mode.TAKEOFF.value, why)
+        self._navigator.takeoff_height = height
+        self._want(Mode.TAKEOFF, again=True)
         return ACCEPTED
 
     def reposition(self, position: Vector3, yaw: float | None) -> Verdict:
         """Fly to a point, world m, and hold there."""
         if not self.armed or self.landed:
-            return self._denied("Reposition", "not flying")
-        self.failsafe = False
-        self.navigator.go_to(position, yaw)
+            return self._notices.denied("Reposition", "not flying")
+        if why := self._obstacle(Mode.HOLD):
+            return self._notices.denied("Reposition", why)
+        self._want(Mode.HOLD)
+        if self.mode is Mode.HOLD:
+            self._navigator.go_to(position, yaw)
+        return ACCEPTED
+
+    def change_speed(self, speed: float) -> Verdict:
+        """Fly automatic modes with another horizontal speed, m/s, until the motors stop; −1: MPC_XY_CRUISE."""
+        if speed != -1.0 and not 0.0 < speed <= self.parameters["MPC_XY_VEL_MAX"]:
+            return self._notices.denied("Speed", "out of range")
+        self._navigator.flight.cruise = None if speed == -1.0 else speed
+        return ACCEPTED
+
+    def set_home(self, position: Vector4) -> Verdict:
+        """Set home, world; arming leaves it there."""
+        self._navigator.flight.home = position
+        self._home_set = True
         return ACCEPTED
 
     def offboard(self, setpoint: Target) -> None:
         """Take an offboard setpoint, all of it finite; it steers while the mode is Offboard."""
-        self.navigator.setpoint = setpoint
-        self._setpoint_t = self.t
+        self._navigator.setpoint = setpoint
+        self._watch.hear_setpoint()
 
     def refuse_setpoint(self, why: str) -> None:
         """Say, but not too often, that a setpoint was not taken. It does not count as part of a stream."""
-        if self.t - self._refused_t >= _REFUSALS_EVERY_S:
-            self._refused_t = self.t
-            self.say(Severity.CRITICAL, f"Setpoint refused: {why}")
+        self._watch.refuse_setpoint(why)
 
     def hear_ground_station(self) -> None:
         """Note that a ground station's heartbeat came."""
-        self._ground_station_t = self.t
+        self._watch.hear_ground_station()
 
-    @property
-    def streaming(self) -> bool:
-        """Setpoints are coming at 2 Hz or more."""
-        return self.t - self._setpoint_t < STREAM_S
+    def sticks(self, sticks: Sticks, *, joystick: bool = True) -> None:
+        """Take stick positions, from a joystick or a radio; COM_RC_IN_MODE says which count."""
+        self._watch.sticks.take(sticks, self.t, joystick=joystick)
+        self._navigator.by_hand.sticks = self._watch.sticks.now
 
-    def say(self, severity: Severity, text: str) -> None:
-        """Tell the operator something."""
-        self.notices.append(Notice(severity, text))
+    # Plans
 
-    # One step
+    def load_mission(self, legs: tuple[Leg, ...]) -> Verdict:
+        """Take another mission; one that is being flown begins anew."""
+        if why := jump_fault(legs):
+            return self._notices.denied("Mission", why)
+        self._navigator.plan = self.plan._replace(mission=legs)
+        self._navigator.mission.load(legs)
+        if self.wanted is Mode.MISSION and (why := self._obstacle(Mode.MISSION)):
+            self.say(Severity.WARNING, f"Mission ended: {why}")
+            self._want(Mode.HOLD)
+        return ACCEPTED
 
-    def step(self, p: Vector4, v: Vector4, grounded: bool, dt: float) -> Vector4 | None:
-        """Advance by `dt` seconds and return the vehicle's reference, or None while the motors are stopped.
+    def load_fence(self, zones: tuple[Zone, ...]) -> Verdict:
+        """Take another fence."""
+        if why := zone_fault(zones):
+            return self._notices.denied("Fence", why)
+        self._navigator.plan = self.plan._replace(fence=zones)
+        return ACCEPTED
 
-        Args:
-            p: Where the vehicle is.
-            v: Its velocities.
-            grounded: Something carries it.
-            dt: The step, s.
-        """
-        self.t += dt
-        self._p = p
-        self.navigator.look(p, v)
-        self._detect_landing(grounded, dt)
-        if self.armed:
-            self._watch_ground()
-            self._watch_battery()
-            self._watch_streams()
-        if not self.armed:
-            return None
-        return self.navigator.steer(dt)
+    def load_rally(self, points: tuple[Vector3, ...]) -> Verdict:
+        """Take other rally points."""
+        self._navigator.plan = self.plan._replace(rally=points)
+        return ACCEPTED
 
-    def _detect_landing(self, grounded: bool, dt: float) -> None:
-        self._contact_s = self._contact_s + dt if grounded else 0.0
-        if self._contact_s >= _LANDED_AFTER_S:
-            if not self.landed:
-                self.say(Severity.INFO, "Landing detected")
-            self.landed = True
-        elif not grounded and self.landed:
-            self.landed = False
-            self.took_off_t = self.t
-            self._flown = True
-            self.say(Severity.INFO, "Takeoff detected")
+    def set_mission_index(self, index: int) -> Verdict:
+        """Go on, or begin, with another item."""
+        if not 0 <= index < len(self.plan.mission):
+            return self._notices.denied("Mission item", f"there is no item {index}")
+        self._navigator.mission.go_to(index)
+        return ACCEPTED
 
-    def _watch_ground(self) -> None:
-        """Disarm after landing, or when armed without taking off."""
-        if not self.landed:
-            return
-        if self._flown and self._contact_s >= _LANDED_AFTER_S + self.parameters["COM_DISARM_LAND"]:
-            self._stop_motors("Disarmed by landing")
-        elif not self._flown and self.t - self.armed_t >= self.parameters["COM_DISARM_PRFLT"]:
-            self._stop_motors("Disarmed by auto preflight disarming")
-
-    def _watch_battery(self) -> None:
-        left = self.battery.remaining
-        if left <= 0.0:
-            self._stop_motors("Battery empty: motors stopped", Severity.EMERGENCY)
-        elif left <= self.parameters["BAT_CRIT_THR"] and not self._alarmed:
-            self._alarmed = True
-            self.say(Severity.CRITICAL, "Critical battery, land now")
-            if (action := self.parameters["COM_LOW_BAT_ACT"]) and not self.landed:
-                self._fail_to(Mode.LAND if action == 2 else Mode.RETURN)
-        elif left <= self.parameters["BAT_LOW_THR"] and not self._warned:
-            self._warned = True
-            self.say(Severity.WARNING, "Low battery, return advised")
-
-    def _watch_streams(self) -> None:
-        """Act on the loss of the offboard stream, and of the ground station where NAV_DLL_ACT asks for it."""
-        if self.mode is Mode.OFFBOARD and self.t - self._setpoint_t > self.parameters["COM_OF_LOSS_T"]:
-            self._lose_offboard(int(self.parameters["COM_OBL_RC_ACT"]))
-        action = _LINK_LOSS_ACTIONS.get(int(self.parameters["NAV_DLL_ACT"]))
-        if action is None or self.failsafe or self._ground_station_t is None:
-            return
-        if not self.landed and self.t - self._ground_station_t > self.parameters["COM_DL_LOSS_T"]:
-            self.say(Severity.CRITICAL, f"Ground station lost: {action.value}")
-            self._fail_to(action)
-
-    def _lose_offboard(self, action: int) -> None:
-        if action == _TERMINATE:
-            self.terminate()
-        elif action == _DISARM:
-            self._stop_motors("Offboard setpoints lost: motors stopped", Severity.CRITICAL)
-        else:
-            mode = _LOSS_ACTIONS[action]
-            self.say(Severity.CRITICAL, f"Offboard setpoints lost: {mode.value}")
-            self._fail_to(mode)
-
-    def _fail_to(self, mode: Mode) -> None:
-        self.failsafe = True
-        if mode is not self.mode:
-            self.navigator.enter(mode)
-
-    def _stop_motors(self, text: str, severity: Severity = Severity.INFO) -> None:
-        """Disarm. The next flight begins in Hold, as in PX4 after a landing."""
-        if self.armed:
-            self.armed = False
-            self.navigator.enter(Mode.HOLD)
-            self.say(severity, text)
-
-    def _denied(self, act: str, why: str) -> Verdict:
-        self.say(Severity.CRITICAL, f"{act} denied: {why}")
-        return Verdict(ok=False, why=why)
+    def _warn_of_far_mission(self) -> None:
+        limit = self.parameters["MIS_DIST_1WP"]
+        if 0.0 < limit < (far := first_waypoint_distance(self.plan.mission, self.home)):
+            self.say(Severity.WARNING, f"First waypoint is far away: {far:.0f} m")

@@ -7,9 +7,11 @@ from math import nan
 from pymavlink.dialects.v20 import common as m
 
 from sim import frames
-from sim.autopilot.navigator import Mode
-from sim.mavlink.modes import custom_mode
-from sim.mavlink.motion import Builder, boot_ms, boot_us
+from sim.autopilot.modes import Mode
+from sim.mavlink import dialect
+from sim.mavlink.manual import UNUSED, Manual
+from sim.mavlink.modes import CUSTOM_MODES, base_mode, custom_mode
+from sim.mavlink.motion import Builder, boot_ms, boot_us, int32
 from sim.simulator import Simulator
 
 CAPABILITIES = (
@@ -17,7 +19,10 @@ CAPABILITIES = (
     | m.MAV_PROTOCOL_CAPABILITY_MISSION_INT
     | m.MAV_PROTOCOL_CAPABILITY_COMMAND_INT
     | m.MAV_PROTOCOL_CAPABILITY_PARAM_ENCODE_BYTEWISE
+    | m.MAV_PROTOCOL_CAPABILITY_MISSION_FENCE
+    | m.MAV_PROTOCOL_CAPABILITY_MISSION_RALLY
     | m.MAV_PROTOCOL_CAPABILITY_SET_POSITION_TARGET_LOCAL_NED
+    | m.MAV_PROTOCOL_CAPABILITY_SET_POSITION_TARGET_GLOBAL_INT
     | m.MAV_PROTOCOL_CAPABILITY_FLIGHT_TERMINATION
     | m.MAV_PROTOCOL_CAPABILITY_MAVLINK2
 )
@@ -46,7 +51,8 @@ _ESTIMATES = (
     | m.ESTIMATOR_POS_HORIZ_ABS
     | m.ESTIMATOR_POS_VERT_ABS
 )
-_NO_CHANNELS = (65535,) * 18
+_NEEDS_POSITION = m.ESTIMATOR_POS_HORIZ_REL | m.ESTIMATOR_POS_HORIZ_ABS | m.ESTIMATOR_VELOCITY_HORIZ
+_LATITUDE, _LONGITUDE, _HEIGHT = frames.ORIGIN
 
 
 class Status:
@@ -54,12 +60,17 @@ class Status:
 
     Args:
         simulator: The vehicle.
+        manual: Its sticks.
+        system_id: Its own; part of its unique id.
         unix_time: Wall-clock time of the simulator's zero, s.
     """
 
-    def __init__(self, simulator: Simulator, unix_time: float) -> None:
+    def __init__(self, simulator: Simulator, manual: Manual, system_id: int, unix_time: float) -> None:
         self._sim = simulator
+        self._manual = manual
+        self._system_id = system_id
         self._unix_time = unix_time
+        self._pings = 0
         self.builders: dict[int, Builder] = {
             m.MAVLINK_MSG_ID_HEARTBEAT: self.heartbeat,
             m.MAVLINK_MSG_ID_SYS_STATUS: self.sys_status,
@@ -72,13 +83,17 @@ class Status:
             m.MAVLINK_MSG_ID_ESTIMATOR_STATUS: self.estimator_status,
             m.MAVLINK_MSG_ID_FLIGHT_INFORMATION: self.flight_information,
             m.MAVLINK_MSG_ID_RC_CHANNELS: self.rc_channels,
+            m.MAVLINK_MSG_ID_GPS_GLOBAL_ORIGIN: self.gps_global_origin,
+            m.MAVLINK_MSG_ID_TIMESYNC: self.timesync,
+            m.MAVLINK_MSG_ID_PING: self.ping,
+            dialect.CURRENT_MODE: self.current_mode,
+            dialect.PROTOCOL_VERSION: dialect.protocol_version,
         }
 
     def heartbeat(self) -> m.MAVLink_message:
         """Mode, armed, and how bad it is."""
         autopilot = self._sim.autopilot
-        flags = m.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED | m.MAV_MODE_FLAG_STABILIZE_ENABLED
-        flags |= m.MAV_MODE_FLAG_AUTO_ENABLED | m.MAV_MODE_FLAG_GUIDED_ENABLED
+        flags = base_mode(autopilot.mode)
         if autopilot.armed:
             flags |= m.MAV_MODE_FLAG_SAFETY_ARMED
         if autopilot.terminated:
@@ -94,8 +109,15 @@ class Status:
         """Health bits, battery."""
         autopilot, battery = self._sim.autopilot, self._sim.battery
         present = _SENSORS | m.MAV_SYS_STATUS_PREARM_CHECK
-        # There is no fence, so none is breached.
-        health = _SENSORS | m.MAV_SYS_STATUS_GEOFENCE
+        if autopilot.plan.fence:
+            present |= m.MAV_SYS_STATUS_GEOFENCE
+        health = _SENSORS
+        if not autopilot.fence_breach:
+            health |= m.MAV_SYS_STATUS_GEOFENCE
+        if "gps" in self._sim.failed:
+            health &= ~m.MAV_SYS_STATUS_SENSOR_GPS
+        if not self._sim.estimate.valid_position:
+            health &= ~m.MAV_SYS_STATUS_SENSOR_XY_POSITION_CONTROL
         if battery.remaining <= autopilot.parameters["BAT_CRIT_THR"]:
             health &= ~m.MAV_SYS_STATUS_SENSOR_BATTERY
         if autopilot.armed or not autopilot.arming_obstacle():
@@ -146,9 +168,9 @@ class Status:
         latitude, longitude, height = frames.geodetic(x, y, z)
         turn = frames.quaternion(0.0, 0.0, frames.heading(yaw))
         return m.MAVLink_home_position_message(
-            round(latitude * 1e7),
-            round(longitude * 1e7),
-            round(height * 1e3),
+            int32(latitude * 1e7),
+            int32(longitude * 1e7),
+            int32(height * 1e3),
             *frames.ned(x, y, z),
             turn,
             nan,
@@ -167,12 +189,17 @@ class Status:
         """What this is and can."""
         nothing = (0,) * 8
         return m.MAVLink_autopilot_version_message(
-            CAPABILITIES, _FIRMWARE, _FIRMWARE, 0, 0, nothing, nothing, nothing, 0, 0, 1
+            CAPABILITIES, _FIRMWARE, _FIRMWARE, 0, 0, nothing, nothing, nothing, 0, 0, self._system_id
         )
 
     def estimator_status(self) -> m.MAVLink_message:
-        """An estimator that is content."""
-        return m.MAVLink_estimator_status_message(boot_us(self._sim), _ESTIMATES, 0, 0, 0, 0, 0, 0, 0.1, 0.1)
+        """What the estimator trusts."""
+        valid = self._sim.estimate.valid_position
+        flags = _ESTIMATES if valid else _ESTIMATES & ~_NEEDS_POSITION
+        accuracy = 0.5 if valid else 50.0
+        return m.MAVLink_estimator_status_message(
+            boot_us(self._sim), flags, 0, 0, 0, 0, 0, 0, accuracy, accuracy
+        )
 
     def flight_information(self) -> m.MAVLink_message:
         """When this flight began."""
@@ -184,8 +211,32 @@ class Status:
         )
 
     def rc_channels(self) -> m.MAVLink_message:
-        """No sticks."""
-        return m.MAVLink_rc_channels_message(boot_ms(self._sim), 0, *_NO_CHANNELS, rssi=255)
+        """The channels as they were overridden; there is no other radio."""
+        channels = self._manual.channels
+        number = sum(us != UNUSED for us in channels)
+        told = channels or (UNUSED,) * 18
+        return m.MAVLink_rc_channels_message(boot_ms(self._sim), number, *told, rssi=255)
+
+    def gps_global_origin(self) -> m.MAVLink_message:
+        """Where the local frame has its origin."""
+        return m.MAVLink_gps_global_origin_message(
+            round(_LATITUDE * 1e7), round(_LONGITUDE * 1e7), round(_HEIGHT * 1e3), boot_us(self._sim)
+        )
+
+    def current_mode(self) -> m.MAVLink_message:
+        """The mode in force, and the one that was asked for."""
+        autopilot = self._sim.autopilot
+        named = CUSTOM_MODES[autopilot.mode]
+        return dialect.current_mode(named.standard, named.custom, CUSTOM_MODES[autopilot.wanted].custom)
+
+    def timesync(self) -> m.MAVLink_message:
+        """A question for the other side's time."""
+        return m.MAVLink_timesync_message(0, int(self._sim.t * 1e9))
+
+    def ping(self) -> m.MAVLink_message:
+        """A question whether anybody is there."""
+        self._pings += 1
+        return m.MAVLink_ping_message(boot_us(self._sim), self._pings - 1 & 0xFFFFFFFF, 0, 0)
 
     def _unix_us(self, t: float | None) -> int:
         return 0 if t is None else int((self._unix_time + t) * 1e6)

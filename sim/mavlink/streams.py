@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 from pymavlink.dialects.v20 import common as m
 
+from sim.mavlink.dialect import CURRENT_MODE
 from sim.mavlink.motion import Builder
 from sim.mavlink.wire import Outbox
 
@@ -14,7 +17,7 @@ LONGEST_S = 2147.0
 _STAGGER_S = 0.004
 
 # Hz. PX4's MAVLINK_MODE_ONBOARD (mavlink_main.cpp), the heartbeat as its sender has it; GPS at its receiver's rate.
-DEFAULT_RATES: dict[int, float] = {
+ONBOARD_RATES: dict[int, float] = {
     m.MAVLINK_MSG_ID_HEARTBEAT: 1.0,
     m.MAVLINK_MSG_ID_LOCAL_POSITION_NED: 30.0,
     m.MAVLINK_MSG_ID_ATTITUDE: 100.0,
@@ -35,6 +38,46 @@ DEFAULT_RATES: dict[int, float] = {
     m.MAVLINK_MSG_ID_SCALED_PRESSURE: 1.0,
     m.MAVLINK_MSG_ID_SYSTEM_TIME: 1.0,
     m.MAVLINK_MSG_ID_ESTIMATOR_STATUS: 1.0,
+    m.MAVLINK_MSG_ID_OBSTACLE_DISTANCE: 10.0,
+    m.MAVLINK_MSG_ID_POSITION_TARGET_LOCAL_NED: 10.0,
+    m.MAVLINK_MSG_ID_POSITION_TARGET_GLOBAL_INT: 10.0,
+    m.MAVLINK_MSG_ID_NAV_CONTROLLER_OUTPUT: 10.0,
+    m.MAVLINK_MSG_ID_VIBRATION: 0.5,
+    m.MAVLINK_MSG_ID_GPS_GLOBAL_ORIGIN: 1.0,
+    m.MAVLINK_MSG_ID_MISSION_CURRENT: 1.0,
+    m.MAVLINK_MSG_ID_TIMESYNC: 10.0,
+    m.MAVLINK_MSG_ID_PING: 1.0,
+    CURRENT_MODE: 0.5,
+}
+
+# Hz. PX4's MAVLINK_MODE_NORMAL, with the seven faster streams its simulation asks for (px4-rc.mavlink).
+GROUND_STATION_RATES: dict[int, float] = {
+    m.MAVLINK_MSG_ID_HEARTBEAT: 1.0,
+    m.MAVLINK_MSG_ID_LOCAL_POSITION_NED: 50.0,
+    m.MAVLINK_MSG_ID_ATTITUDE: 50.0,
+    m.MAVLINK_MSG_ID_ATTITUDE_QUATERNION: 50.0,
+    m.MAVLINK_MSG_ID_GLOBAL_POSITION_INT: 50.0,
+    m.MAVLINK_MSG_ID_EXTENDED_SYS_STATE: 1.0,
+    m.MAVLINK_MSG_ID_SYS_STATUS: 1.0,
+    m.MAVLINK_MSG_ID_BATTERY_STATUS: 0.5,
+    m.MAVLINK_MSG_ID_HOME_POSITION: 0.5,
+    m.MAVLINK_MSG_ID_GPS_RAW_INT: 5.0,
+    m.MAVLINK_MSG_ID_ALTITUDE: 1.0,
+    m.MAVLINK_MSG_ID_VFR_HUD: 4.0,
+    m.MAVLINK_MSG_ID_DISTANCE_SENSOR: 0.5,
+    m.MAVLINK_MSG_ID_WIND_COV: 0.5,
+    m.MAVLINK_MSG_ID_RC_CHANNELS: 20.0,
+    m.MAVLINK_MSG_ID_SCALED_PRESSURE: 1.0,
+    m.MAVLINK_MSG_ID_ESTIMATOR_STATUS: 0.5,
+    m.MAVLINK_MSG_ID_OBSTACLE_DISTANCE: 1.0,
+    m.MAVLINK_MSG_ID_POSITION_TARGET_LOCAL_NED: 50.0,
+    m.MAVLINK_MSG_ID_POSITION_TARGET_GLOBAL_INT: 1.0,
+    m.MAVLINK_MSG_ID_NAV_CONTROLLER_OUTPUT: 1.0,
+    m.MAVLINK_MSG_ID_VIBRATION: 0.1,
+    m.MAVLINK_MSG_ID_GPS_GLOBAL_ORIGIN: 1.0,
+    m.MAVLINK_MSG_ID_MISSION_CURRENT: 1.0,
+    m.MAVLINK_MSG_ID_PING: 0.1,
+    CURRENT_MODE: 0.5,
 }
 
 
@@ -44,14 +87,16 @@ class Streams:
     Args:
         builders: How to build each message there is.
         outbox: Where it goes.
+        rates: By default, Hz by message.
     """
 
-    def __init__(self, builders: dict[int, Builder], outbox: Outbox) -> None:
+    def __init__(self, builders: Mapping[int, Builder], outbox: Outbox, rates: Mapping[int, float]) -> None:
         self._builders = builders
         self._outbox = outbox
+        self._rates = rates
         self._interval: dict[int, float] = {}
         self._due: dict[int, float] = {}
-        for place, (message_id, rate) in enumerate(DEFAULT_RATES.items()):
+        for place, (message_id, rate) in enumerate(rates.items()):
             self._interval[message_id] = 1.0 / rate
             self._due[message_id] = place * _STAGGER_S
 
@@ -63,8 +108,8 @@ class Streams:
         """
         if message_id not in self._builders or message_id == m.MAVLINK_MSG_ID_HEARTBEAT:
             return False
-        if interval_us == 0 and message_id in DEFAULT_RATES:
-            self._interval[message_id] = 1.0 / DEFAULT_RATES[message_id]
+        if interval_us == 0 and message_id in self._rates:
+            self._interval[message_id] = 1.0 / self._rates[message_id]
         elif interval_us > 0:
             self._interval[message_id] = max(SHORTEST_S, min(LONGEST_S, interval_us * 1e-6))
         else:
@@ -81,20 +126,26 @@ class Streams:
         interval = self._interval.get(message_id)
         return -1 if interval is None else round(interval * 1e6)
 
-    def send_once(self, message_id: int) -> bool:
-        """Send a message now; say whether there is such a one."""
+    def built(self, message_id: int) -> m.MAVLink_message | None:
+        """Return a message as it would go out now; None where there is no such one, or nothing to tell."""
         builder = self._builders.get(message_id)
-        if builder is None:
-            return False
-        self._outbox.send(builder())
-        return True
+        return None if builder is None else builder()
 
-    def step(self, t: float) -> None:
-        """Send what is due at time `t`, s. A stream that fell behind skips what it missed."""
+    def step(self, t: float, *, heard: bool = True) -> None:
+        """Send what is due at time `t`, s. A stream that fell behind skips what it missed.
+
+        Args:
+            t: Now, s.
+            heard: Somebody listens; otherwise only the heartbeat goes out.
+        """
         # Half a step of grace: a due time that rounding puts just after this step belongs to it.
         now = t + 0.5 * SHORTEST_S
         for message_id, due in self._due.items():
-            if now >= due:
-                self._outbox.send(self._builders[message_id]())
-                interval = self._interval[message_id]
-                self._due[message_id] = due + interval if now < due + interval else t + interval
+            if now < due:
+                continue
+            if heard or message_id == m.MAVLINK_MSG_ID_HEARTBEAT:
+                message = self._builders[message_id]()
+                if message is not None:
+                    self._outbox.send(message)
+            interval = self._interval[message_id]
+            self._due[message_id] = due + interval * ((now - due) // interval + 1.0)

@@ -7,6 +7,8 @@ from collections.abc import Iterator
 
 from pymavlink.dialects.v20 import common as dialect
 
+from sim.mavlink.signing import Signing
+
 # A datagram stays below the usual MTU.
 DATAGRAM_BYTES = 1200
 AUTOPILOT_COMPONENT = 1
@@ -17,10 +19,15 @@ _STATUSTEXT_BYTES = 50
 
 
 class Inbox:
-    """Takes bytes apart into messages; what is not a whole, right frame is passed over."""
+    """Takes bytes apart into messages; what is not a whole, right frame is passed over, and what is not trusted too.
 
-    def __init__(self) -> None:
+    Args:
+        signing: Whom to trust; everybody unless given.
+    """
+
+    def __init__(self, signing: Signing | None = None) -> None:
         self._decoder = dialect.MAVLink(None)
+        self._signing = signing
         self._buffer = bytearray()
 
     def messages(self, data: bytes, *, whole: bool) -> Iterator[dialect.MAVLink_message]:
@@ -42,7 +49,7 @@ class Inbox:
                 continue
             message = self._decoded(frame)
             start += length if message else 1
-            if message:
+            if message and (self._signing is None or self._signing.trusts(frame, message)):
                 yield message
         del buffer[: len(buffer) if whole else start]
 
@@ -73,21 +80,33 @@ def _frame_length(buffer: bytearray, start: int) -> int | None:
 
 
 class Outbox:
-    """Packs messages in order and joins them into datagrams.
+    """Packs messages in order, signs them where there is a key, and joins them into datagrams.
 
     Args:
         system_id: Of the vehicle.
+        signing: Its key; nothing is signed unless given.
+        link_id: Told in signatures.
     """
 
-    def __init__(self, system_id: int) -> None:
+    def __init__(self, system_id: int, signing: Signing | None = None, link_id: int = 0) -> None:
         self._packer = dialect.MAVLink(None, srcSystem=system_id, srcComponent=AUTOPILOT_COMPONENT)
+        self._packer.signing.link_id = link_id
+        self._signing = signing
         self._frames: list[bytes] = []
         self._text_id = 0
 
     def send(self, message: dialect.MAVLink_message) -> None:
         """Queue a message."""
+        if self._signing is not None:
+            self._prepare_signature(self._signing)
         self._frames.append(message.pack(self._packer))
         self._packer.seq = (self._packer.seq + 1) % 256
+
+    def _prepare_signature(self, signing: Signing) -> None:
+        state = self._packer.signing
+        state.secret_key, state.sign_outgoing = signing.key, signing.key is not None
+        if state.sign_outgoing:
+            state.timestamp = signing.timestamp()
 
     def say(self, severity: int, text: str) -> None:
         """Queue a STATUSTEXT, in chunks where it is too long for one; the last, never full, ends the text."""

@@ -57,7 +57,7 @@ class Overview(Instrument):
 
     def _standing(self, frame: Frame, view: scene.View, altitude: float) -> Canvas:
         mission = frame.run.mission
-        level = tuple(scene.beside(obstacle, altitude) for obstacle in (mission.obstacle if mission else ()))
+        level = scene.levels(mission, altitude)
         if self._ground is None or self._ground_of != (view, level):
             self._ground = Canvas(view.width // 2, view.height // 4)
             scene.draw_world(self._ground, view, mission, altitude)

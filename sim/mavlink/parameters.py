@@ -1,4 +1,4 @@
-"""The smaller MAVLink services: parameters, missions (there are none), and files (there are none)."""
+"""The parameter protocol of MAVLink, bytewise."""
 
 from __future__ import annotations
 
@@ -11,13 +11,12 @@ from sim.autopilot.parameters import NAMES, SPECS, Parameters
 from sim.mavlink.wire import Outbox
 
 _LISTED_A_STEP = 2
-_FTP_NAK, _FTP_UNKNOWN_COMMAND = 129, 7
-_FTP_HEADER = struct.Struct("<HBBBBBBI")
-_FTP_BYTES = 251
 
 
 class ParameterService:
     """PARAM_*, bytewise: an integer's bits travel in the float's place.
+
+    What changes is told on every link, whoever changed it.
 
     Args:
         parameters: The autopilot's.
@@ -28,9 +27,16 @@ class ParameterService:
         self._parameters = parameters
         self._outbox = outbox
         self._to_list: deque[int] = deque()
+        self._changed = parameters.changed
+        self._known = [parameters[name] for name in NAMES]
 
     def step(self) -> None:
-        """Send the next few of a list that was asked for."""
+        """Tell what has changed, and the next few of a list that was asked for."""
+        if self._parameters.changed != self._changed:
+            self._changed = self._parameters.changed
+            for index, name in enumerate(NAMES):
+                if self._parameters[name] != self._known[index]:
+                    self._send(index)
         for _ in range(min(_LISTED_A_STEP, len(self._to_list))):
             self._send(self._to_list.popleft())
 
@@ -66,6 +72,7 @@ class ParameterService:
     def _send(self, index: int) -> None:
         name = NAMES[index]
         value, kind = self._parameters[name], m.MAV_PARAM_TYPE_REAL32
+        self._known[index] = value
         if SPECS[name].integer:
             value = struct.unpack("<f", struct.pack("<i", int(value)))[0]
             kind = m.MAV_PARAM_TYPE_INT32
@@ -80,56 +87,6 @@ class ParameterService:
         name = message.param_id.encode("ascii", errors="replace")[:16]
         system, component = message.get_srcSystem(), message.get_srcComponent()
         self._outbox.send(m.MAVLink_param_error_message(system, component, name, index, error))
-
-
-class MissionService:
-    """MISSION_*: this vehicle has no mission, fence or rally points, says so, and takes none.
-
-    Args:
-        outbox: Where answers go.
-    """
-
-    def __init__(self, outbox: Outbox) -> None:
-        self._outbox = outbox
-
-    def list(self, message: m.MAVLink_mission_request_list_message) -> None:
-        """Say that there are none."""
-        to = (message.get_srcSystem(), message.get_srcComponent())
-        self._outbox.send(m.MAVLink_mission_count_message(*to, 0, message.mission_type))
-
-    def count(self, message: m.MAVLink_mission_count_message) -> None:
-        """Refuse what would be uploaded; nothing is as good as what is here."""
-        self._acknowledge(message, m.MAV_MISSION_UNSUPPORTED if message.count else m.MAV_MISSION_ACCEPTED)
-
-    def clear(self, message: m.MAVLink_mission_clear_all_message) -> None:
-        """It is clear already."""
-        self._acknowledge(message, m.MAV_MISSION_ACCEPTED)
-
-    def item(
-        self, message: m.MAVLink_mission_request_int_message | m.MAVLink_mission_request_message
-    ) -> None:
-        """There is no such item."""
-        self._acknowledge(message, m.MAV_MISSION_INVALID_SEQUENCE)
-
-    def _acknowledge(
-        self,
-        message: m.MAVLink_mission_count_message
-        | m.MAVLink_mission_clear_all_message
-        | m.MAVLink_mission_request_int_message
-        | m.MAVLink_mission_request_message,
-        result: int,
-    ) -> None:
-        to = (message.get_srcSystem(), message.get_srcComponent())
-        self._outbox.send(m.MAVLink_mission_ack_message(*to, result, message.mission_type))
-
-
-def file_refusal(message: m.MAVLink_file_transfer_protocol_message) -> m.MAVLink_message:
-    """Return the answer to a file request: not acknowledged, the command is unknown here."""
-    sequence, session, opcode, *_ = _FTP_HEADER.unpack(bytes(message.payload[: _FTP_HEADER.size]))
-    header = _FTP_HEADER.pack((sequence + 1) & 0xFFFF, session, _FTP_NAK, 1, opcode, 0, 0, 0)
-    payload = (header + bytes((_FTP_UNKNOWN_COMMAND,))).ljust(_FTP_BYTES, b"\0")
-    to = (message.get_srcSystem(), message.get_srcComponent())
-    return m.MAVLink_file_transfer_protocol_message(0, *to, payload)
 
 
 def _index(name: str) -> int:

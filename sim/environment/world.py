@@ -1,6 +1,7 @@
-"""The obstacles of a world: how far a point is from them, which is nearest, and which way leads out.
+"""The obstacles of a world: how far a point is from them, which is nearest, where a ray meets them.
 
-Signed distance: positive outside, negative inside, exact everywhere outside. World ENU, metres.
+Signed distance: positive outside, negative inside, exact everywhere outside. World ENU, metres. Many points at once
+are `sim.environment.field`'s business.
 """
 
 from __future__ import annotations
@@ -9,11 +10,11 @@ from collections.abc import Iterable
 from math import cos, hypot, inf, radians, sin, sqrt
 from typing import NamedTuple, Protocol
 
+from sim.environment.shapes import primitives
 from sim.kinematics import Vector3
-from sim.scenario import Box, Cylinder, Obstacle, Sphere
+from sim.scenario import Box, Cylinder, Obstacle, Primitive, Sphere
 
 FLOOR_NAME = "floor"
-_SURFACE = 1e-3
 
 
 class Solid(Protocol):
@@ -29,6 +30,10 @@ class Solid(Protocol):
         """Return the gradient of the distance: the unit vector that leads away from the solid."""
         ...
 
+    def ray(self, origin: Vector3, heading: Vector3) -> float:
+        """Return the way along a unit vector to the surface, m: 0 from within, infinite where it is missed."""
+        ...
+
 
 class Nearest(NamedTuple):
     """The obstacle nearest to a point.
@@ -37,11 +42,13 @@ class Nearest(NamedTuple):
         distance: Signed, m; infinite where there is none.
         name: Its name, or "".
         normal: Unit vector away from it, world; zero where there is none.
+        point: Of its surface, the one nearest; the asked one where there is none.
     """
 
     distance: float
     name: str
     normal: Vector3
+    point: Vector3
 
 
 class World:
@@ -50,10 +57,16 @@ class World:
     Args:
         obstacles: From the mission.
         floor: Count the ground, z = 0, as one more obstacle.
+
+    Attributes:
+        primitives: What the obstacles are made of, without the floor.
+        solids: The same prepared for distance, and the floor if it counts.
     """
 
     def __init__(self, obstacles: Iterable[Obstacle] = (), *, floor: bool = False) -> None:
-        solids: list[Solid] = [_prepared(obstacle) for obstacle in obstacles]
+        self.primitives = tuple(part for obstacle in obstacles for part in primitives(obstacle))
+        self.floor = floor
+        solids: list[Solid] = [_prepared(part) for part in self.primitives]
         if floor:
             solids.append(_Floor())
         self.solids = tuple(solids)
@@ -67,24 +80,14 @@ class World:
         """Return the nearest obstacle with the way out."""
         distance, solid = self._nearest(point)
         if solid is None:
-            return Nearest(inf, "", (0.0, 0.0, 0.0))
-        return Nearest(distance, solid.name, solid.normal(*point))
+            return Nearest(inf, "", (0.0, 0.0, 0.0), point)
+        normal = solid.normal(*point)
+        x, y, z = (at - distance * away for at, away in zip(point, normal, strict=True))
+        return Nearest(distance, solid.name, normal, (x, y, z))
 
     def ray(self, origin: Vector3, heading: Vector3, limit: float) -> float:
         """Return the way from `origin` along the unit vector `heading` to the first surface, m; at most `limit`."""
-        along = 0.0
-        while along < limit:
-            distance, _ = self.clearance(
-                (
-                    origin[0] + along * heading[0],
-                    origin[1] + along * heading[1],
-                    origin[2] + along * heading[2],
-                )
-            )
-            if distance <= _SURFACE:
-                return along
-            along += distance
-        return limit
+        return min(limit, *(solid.ray(origin, heading) for solid in self.solids), inf)
 
     def _nearest(self, point: Vector3) -> tuple[float, Solid | None]:
         x, y, z = point
@@ -129,6 +132,15 @@ class _Box:
         u, v, w = ((size if value >= 0.0 else -size) / length for size, value in zip(out, local, strict=True))
         return self._c * u - self._s * v, self._s * u + self._c * v, w
 
+    def ray(self, origin: Vector3, heading: Vector3) -> float:
+        """Intersect with the three slabs that a box is (Kay and Kajiya 1986, Ray tracing complex scenes)."""
+        u, v, w = self._local(*origin)
+        c, s = self._c, self._s
+        ways = (c * heading[0] + s * heading[1], c * heading[1] - s * heading[0], heading[2])
+        return _through(
+            (_slab(at, way, half) for at, way, half in zip((u, v, w), ways, self._half, strict=True))
+        )
+
 
 class _Cylinder:
     def __init__(self, cylinder: Cylinder) -> None:
@@ -155,6 +167,12 @@ class _Cylinder:
         length = hypot(a, b)
         return ux * a / length, uy * a / length, (b if dz >= 0.0 else -b) / length
 
+    def ray(self, origin: Vector3, heading: Vector3) -> float:
+        dx, dy = origin[0] - self._center[0], origin[1] - self._center[1]
+        along, toward = heading[0] ** 2 + heading[1] ** 2, dx * heading[0] + dy * heading[1]
+        around = _round(along, toward, dx * dx + dy * dy - self._radius**2)
+        return _through((around, _slab(origin[2] - self._center[2], heading[2], self._half)))
+
 
 class _Sphere:
     def __init__(self, sphere: Sphere) -> None:
@@ -171,6 +189,12 @@ class _Sphere:
         length = hypot(dx, dy, dz)
         return (dx / length, dy / length, dz / length) if length > 0.0 else (0.0, 0.0, 1.0)
 
+    def ray(self, origin: Vector3, heading: Vector3) -> float:
+        (x, y, z), (east, north, up) = origin, self._center
+        dx, dy, dz = x - east, y - north, z - up
+        toward = dx * heading[0] + dy * heading[1] + dz * heading[2]
+        return _through((_round(1.0, toward, dx * dx + dy * dy + dz * dz - self._radius**2),))
+
 
 class _Floor:
     name = FLOOR_NAME
@@ -181,12 +205,45 @@ class _Floor:
     def normal(self, x: float, y: float, z: float) -> Vector3:  # noqa: ARG002
         return 0.0, 0.0, 1.0
 
+    def ray(self, origin: Vector3, heading: Vector3) -> float:
+        if origin[2] <= 0.0:
+            return 0.0
+        return origin[2] / -heading[2] if heading[2] < 0.0 else inf
 
-def _prepared(obstacle: Obstacle) -> Solid:
-    match obstacle:
+
+def _prepared(part: Primitive) -> Solid:
+    match part:
         case Box():
-            return _Box(obstacle)
+            return _Box(part)
         case Cylinder():
-            return _Cylinder(obstacle)
+            return _Cylinder(part)
         case Sphere():
-            return _Sphere(obstacle)
+            return _Sphere(part)
+
+
+def _slab(at: float, way: float, half: float) -> tuple[float, float]:
+    """Return where a line with coordinate `at + t way` is within ±half: from t to t."""
+    if way == 0.0:
+        return (-inf, inf) if abs(at) <= half else (inf, -inf)
+    one, other = (-half - at) / way, (half - at) / way
+    return (one, other) if one <= other else (other, one)
+
+
+def _round(along: float, toward: float, over: float) -> tuple[float, float]:
+    """Return where `along t² + 2 toward t + over ≤ 0`: a line within a circle or a sphere."""
+    if along == 0.0:
+        return (-inf, inf) if over <= 0.0 else (inf, -inf)
+    root = toward * toward - along * over
+    if root < 0.0:
+        return inf, -inf
+    root = sqrt(root)
+    return (-toward - root) / along, (-toward + root) / along
+
+
+def _through(spans: Iterable[tuple[float, float]]) -> float:
+    """Return the first t ≥ 0 that is within all spans, or infinity."""
+    enter, leave = 0.0, inf
+    for start, end in spans:
+        enter = max(enter, start)
+        leave = min(leave, end)
+    return enter if enter <= leave else inf

@@ -1,4 +1,4 @@
-"""What obstacles do to a vehicle: a sphere that is stopped at their surface, slides along it, never passes through.
+"""What obstacles do to a vehicle: a sphere that bounces or stops at their surface, slides along, never passes.
 
 Each solid is convex and its distance is exact outside, so a sphere of radius r may travel as far as the distance
 minus r before it can touch (sphere tracing). That is tried again and again until it touches or has travelled all the
@@ -8,17 +8,27 @@ way: no speed is too high.
 from __future__ import annotations
 
 from math import inf, sqrt
+from typing import NamedTuple
 
+from sim.environment.world import Solid, World
 from sim.kinematics import Vector3
-from sim.world import Solid, World
 
 # The surface is touched within the skin; it is left beyond the release distance, so that resting on it, or
-# trembling at it, is one contact.
+# bouncing at it, is one contact.
 SKIN = 1e-3
-RELEASE = 0.02
+RELEASE = 0.1
+# Slower than this nothing bounces, m/s: contact that goes on is contact.
+_BOUNCES_OVER = 0.2
 _SLIDES = 4
 # A way this little into a surface is along it: rounding must not glue the vehicle to a wall.
 _ALONG = -1e-9
+
+
+class Strike(NamedTuple):
+    """A contact that has just begun: with what, and the unit normal of its surface there."""
+
+    name: str
+    normal: Vector3
 
 
 class Collider:
@@ -35,13 +45,13 @@ class Collider:
         self._free = 0.0
         self._touching: set[str] = set()
         self.normals: list[Vector3] = []
-        self.struck: list[str] = []
+        self.struck: list[Strike] = []
 
     def travel(self, start: Vector3, end: Vector3) -> Vector3:
         """Return where a motion from `start` to `end` ends. World, m.
 
-        Afterwards `normals` holds the unit normals of the surfaces it was stopped by (velocity into them is gone),
-        and `struck` the names of the obstacles touched that were not touched before.
+        Afterwards `normals` holds the unit normals of the surfaces it was stopped by,
+        and `struck` the contacts with obstacles that were not touched before.
         """
         self.normals.clear()
         self.struck.clear()
@@ -59,7 +69,7 @@ class Collider:
             self.normals.append(normal)
             if solid.name not in self._touching:
                 self._touching.add(solid.name)
-                self.struck.append(solid.name)
+                self.struck.append(Strike(solid.name, normal))
             way = without(_minus(end, position), self.normals)
         self._look(position)
         return position
@@ -93,11 +103,35 @@ class Collider:
     def _look(self, position: Vector3) -> None:
         """Measure anew how far nothing can be touched, and let go of what has been left."""
         self._free = inf
+        near: set[str] = set()
         for solid in self._solids:
             gap = solid.distance(*position) - self._radius
             self._free = min(self._free, gap - SKIN)
-            if gap > RELEASE:
-                self._touching.discard(solid.name)
+            if gap <= RELEASE:
+                near.add(solid.name)
+        self._touching &= near
+
+
+def impact_speed(velocity: Vector3, normal: Vector3) -> float:
+    """Return how fast a velocity leads into a surface, m/s; 0 where it leads away."""
+    return max(0.0, -(velocity[0] * normal[0] + velocity[1] * normal[1] + velocity[2] * normal[2]))
+
+
+def bounced(velocity: Vector3, strikes: list[Strike], restitution: float) -> Vector3:
+    """Return a velocity after new contacts: v − (1 + e) (v·n) n for each that is fast enough to bounce.
+
+    Args:
+        velocity: World, m/s.
+        strikes: The contacts.
+        restitution: e, 0 to 1.
+    """
+    x, y, z = velocity
+    for _, normal in strikes:
+        into = impact_speed((x, y, z), normal)
+        if into > _BOUNCES_OVER:
+            push = (1.0 + restitution) * into
+            x, y, z = x + push * normal[0], y + push * normal[1], z + push * normal[2]
+    return x, y, z
 
 
 def without(vector: Vector3, normals: list[Vector3]) -> Vector3:

@@ -1,0 +1,1 @@
+"""What is around the vehicle: obstacles, contact with them, wind, and what rangefinders see."""

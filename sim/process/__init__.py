@@ -1,0 +1,1 @@
+"""The simulated vehicle as a process: command line, loop, links, status line."""

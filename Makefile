@@ -6,7 +6,7 @@ export UV_PYTHON_DOWNLOADS := never
 export UV_PROJECT_ENVIRONMENT := .venv
 unexport VIRTUAL_ENV
 
-.PHONY: help fly test check format bench docs-pictures clean
+.PHONY: help fly test coverage check format bench docs-pictures clean
 help: ## list the targets
 	@grep -E '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## (.*)/  make \1\t\2/' | expand -t 22
 
@@ -19,11 +19,14 @@ help: ## list the targets
 fly: .venv/.synced ## start a training flight on the simulated vehicle
 	@$(BIN)/groundstation --sim
 
-test: check .venv/.synced ## run every check and every test, with coverage
-	@$(BIN)/coverage erase
-	@$(BIN)/coverage run -m pytest
-	@$(BIN)/coverage combine --quiet
-	@$(BIN)/coverage report | tail -n 15
+# What runs real processes in real time runs by itself, one after the other.
+test: check .venv/.synced ## run every check and every test
+	@$(BIN)/pytest --numprocesses auto --dist loadfile -m "not flight"
+	@$(BIN)/pytest -m flight
+
+coverage: .venv/.synced ## run every test and print which lines no test reached
+	@$(BIN)/pytest --numprocesses auto --dist loadfile -m "not flight" --cov --cov-report=
+	@$(BIN)/pytest -m flight --cov --cov-append --cov-report=term-missing:skip-covered
 
 check: .venv/.synced ## lint, format, types, import contracts
 	@$(BIN)/ruff check

@@ -309,7 +309,7 @@ class Range:
             *sim.v,
             *estimate.p,
             *estimate.v,
-            *sim.environment.wind,
+            *sim.wind,
             *sim.autopilot.home,
             sim.battery.remaining,
         )

@@ -72,7 +72,7 @@ def test_every_kind_of_obstacle_stops_it(kind):
     drone = Drone(Scenario(obstacle=(AHEAD[kind],))).take_off()
     assert drone.sim.autopilot.parameters.set("MPC_XY_CRUISE", 1.5)
     assert drone.sim.autopilot.reposition((12.0, 0.0, 2.0), None).ok
-    nearest = min(drone.sim.environment.world.clearance(p[:3])[0] for p, _, _ in drone.path(12))
+    nearest = min(drone.sim.world.clearance(p[:3])[0] for p, _, _ in drone.path(12))
     assert nearest == pytest.approx(drone.sim.airframe.radius, abs=2e-3)
     assert {collision.name for collision in drone.sim.collisions} == {"thing"}
     assert drone.sim.p[0] < 6.0
@@ -208,9 +208,9 @@ def test_an_obstacle_at_the_start_is_told():
 @pytest.mark.parametrize("model", ["kinematic", "dynamic"])
 def test_wind_changed_in_flight_is_felt(model):
     drone = Drone(Scenario(vehicle=VehicleChoice(model=model))).take_off()
-    assert drone.sim.environment.wind == (0.0, 0.0, 0.0)
+    assert drone.sim.wind == (0.0, 0.0, 0.0)
     assert drone.sim.autopilot.parameters.set("SIM_WIND_N", 6.0)
     drone.run(0.5)
-    assert drone.sim.environment.wind == (0.0, 6.0, 0.0)
+    assert drone.sim.wind == (0.0, 6.0, 0.0)
     moved = drone.sim.p[1]
     assert moved > 0.05 if model == "dynamic" else moved == pytest.approx(0.0, abs=1e-6)

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Annotated
 
 import msgspec
+import tomli_w
 from msgspec import Meta, Struct
 
 from drivers.device import DeviceError, DeviceInfo, HandleState, HapticDevice, Vector3
@@ -74,10 +75,7 @@ def save_calibration(path: Path, calibration: Calibration) -> None:
         InputError: It cannot be written.
     """
     new = path.with_suffix(".new")
-    text = "".join(
-        f"{key} = {msgspec.json.encode(value).decode()}\n"
-        for key, value in msgspec.structs.asdict(calibration).items()
-    )
+    text = tomli_w.dumps(msgspec.structs.asdict(calibration))
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         new.write_text(text, encoding="utf-8")

@@ -7,6 +7,7 @@ from collections.abc import Callable
 
 from drivers.device import ZERO3, DeviceError, DeviceInfo, HandleState, HapticDevice, Vector3
 from groundstation.clock import Clock
+from groundstation.devices.sanity import impossible, unusable
 from groundstation.messages import Severity
 
 RETRY_S = 0.5
@@ -115,6 +116,9 @@ class DeviceKeeper:
             self._lose(now, error)
             return None
         self.read_s = max(self.read_s, self._clock() - began)
+        if words := impossible(state, self.info, began):
+            self._lose(now, DeviceError(f"{self.info.name}: {words}; unplug it, plug it in again."))
+            return None
         if not self.present:
             self.present, self._told = True, ""
             self._tell(Severity.INFO, f"{self.info.name} is there.")
@@ -145,6 +149,10 @@ class DeviceKeeper:
         self._opening = False
         if self._fault:
             self._why = self._fault
+            self._complain()
+            return
+        if words := unusable(self._device.info):
+            self._why = f"{self._device.info.name}: {words}; its driver is wrong."
             self._complain()
             return
         self._open = True

@@ -34,7 +34,7 @@ class Conditions(NamedTuple):
     Attributes:
         t: Now, monotonic s.
         gap: Since the servo's last tick, s.
-        believable: Every number from the handle and the vehicle is; see `believable`.
+        believable: Every number from the vehicle is; those of the handle were judged where it is read.
         present, homed, centred: Of the handle.
         handle_age: Age of the handle's sample, s.
         connected, armed, in_air: Of the vehicle.
@@ -158,7 +158,7 @@ def hand_fault(c: Conditions, safety: Safety) -> str:
     if not c.homed:
         return "the handle is not homed; move it through its range until it is"
     if not c.believable:
-        return "the handle or the vehicle gave a number that cannot be"
+        return "the vehicle gave a number that cannot be"
     if not c.handle_age <= safety.handle_stale_s:
         return f"the handle's sample is {c.handle_age:.2f} s old"
     if not c.gap <= STALL_S:

@@ -22,7 +22,6 @@ from groundstation.pilot.engagement import (
     Ending,
     Engagement,
     advance,
-    believable,
     centred,
     disengage,
     engage,
@@ -159,17 +158,14 @@ class Servo:
             )
 
     def _look(self, now: float, handle: HandleState | None) -> tuple[HandleState, Conditions]:
-        """Return a handle that can be believed, and what coupling depends on."""
+        """Return the handle, at rest where there is none, and what coupling depends on."""
         feed = self._feed
-        sound = handle is None or believable(
-            (*handle.position, *handle.velocity, handle.yaw, handle.device_time)
-        )
-        hand = handle if handle is not None and sound else AT_REST
+        hand = handle if handle is not None else AT_REST
         self._homed = hand.homed
         conditions = Conditions(
             t=now,
             gap=now - self._last_t,
-            believable=sound and feed.believable,
+            believable=feed.believable,
             present=handle is not None,
             homed=handle is not None and handle.homed,
             centred=centred(hand, self._info, self._settings.mapping.yaw_range),

@@ -32,6 +32,8 @@ ROOT = Path(__file__).resolve().parents[1]
 DT = 0.004
 A_STEP = 4
 MEMORY_BAR_MB = 8.0
+# Longer than the longest blackout a parameter may set, s.
+_PATIENCE_S = 120.0
 _FLOATS = (0.0, -0.0, 0.5, 1.0, -1.0, 2.0, 4.0, 6.0, 90.0, 32.0, 21196.0, 488.0, 1e5, -1e5)
 _EXTREMES = (math.nan, math.inf, -math.inf, 3.4e38, -3.4e38, 1e-40, -1e-40, 1e9, 2147483648.0)
 _COMMANDS = (
@@ -423,14 +425,26 @@ def _fire_at(process, station: socket.socket, peer, number: int, seed: int) -> O
         if process.poll() is not None:
             raise BrokenError(f"the process ended: {process.stderr.read()[-400:]}")
     seconds = time.perf_counter() - began
-    _hear(station, m.MAVLINK_MSG_ID_HEARTBEAT)
+    _hear(station, peer, m.MAVLINK_MSG_ID_HEARTBEAT)
     return Outcome(sent, seconds, 0, resident_mb(process.pid) - before, 0.0)
 
 
-def _hear(station: socket.socket, message_id: int) -> None:
-    inbox, deadline = Inbox(), time.monotonic() + 20.0
-    station.settimeout(5.0)
+def _hear(station: socket.socket, peer, message_id: int) -> None:
+    """Wait for a message; meanwhile take back, as a ground station would, what hostile parameters did to the channel.
+
+    A blackout by parameter ends by itself within a minute.
+    """
+    packer = m.MAVLink(None, srcSystem=255, srcComponent=190)
+    ideal = [
+        m.MAVLink_param_set_message(0, 0, name.encode(), 0.0, m.MAV_PARAM_TYPE_REAL32).pack(packer)
+        for name in NAMES
+        if name.startswith(("SIM_UP_", "SIM_DN_"))
+    ]
+    inbox, deadline = Inbox(), time.monotonic() + _PATIENCE_S
+    station.settimeout(0.2)
     while time.monotonic() < deadline:
+        for data in ideal:
+            station.sendto(data, peer)
         try:
             data = station.recv(65536)
         except TimeoutError:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from sim.autopilot.parameters import SPECS, Parameters
+from sim.autopilot.parameters import LEAST_RATE, SPECS, Parameters
 from sim.channel import IDEAL, Conditions
 
 BLACKOUT = "SIM_NET_BLACK"
@@ -26,7 +26,7 @@ HELP = """\
 channel, in virtual time, on each link between the vehicle and everyone else:
   delay=S            every frame takes so long, s
   jitter=S           up to so much more or less, s; the order stays
-  loss=SHARE         lost, 0 to 1;  burst=N: in bursts of N frames on average
+  loss=SHARE         lost, 0 to 0.95;  burst=N: in bursts of N frames on average
   duplicate=SHARE    come twice, 0 to 1
   reorder=SHARE      may be overtaken, 0 to 1
   rate=BYTES         bytes a second, 0 without limit
@@ -109,6 +109,9 @@ def changed(both: BothWays, parameters: Parameters) -> BothWays:
     """Return the conditions that the parameters ask for; what has no parameter stays."""
 
     def one(start: str, conditions: Conditions) -> Conditions:
-        return conditions._replace(**{field: parameters[start + end] for field, end in _IN_FLIGHT.items()})
+        asked = {field: parameters[start + end] for field, end in _IN_FLIGHT.items()}
+        if asked["rate"] > 0.0:
+            asked["rate"] = max(asked["rate"], LEAST_RATE)
+        return conditions._replace(**asked)
 
     return BothWays(one(_UP, both.up), one(_DOWN, both.down))

@@ -98,6 +98,23 @@ def kinds(heard):
 # Links and channel
 
 
+def test_the_worst_that_parameters_do_to_the_channel_can_be_taken_back():
+    flown = Flown()
+    worst = {"LOSS": 0.95, "RATE": 0.001, "DELAY": 10.0, "JITTER": 10.0, "REORD": 1.0, "DUP": 1.0}
+    for name, value in worst.items():
+        for way in ("SIM_UP_", "SIM_DN_"):
+            flown.set(way + name, value)
+    flown.set("SIM_NET_BLACK", 60.0)
+    flown.run(70.0)
+    for _ in range(400):
+        for name in worst:
+            flown.set("SIM_UP_" + name, 0.0)
+            flown.set("SIM_DN_" + name, 0.0)
+        flown.run(0.2)
+    flown.command(m.MAV_CMD_REQUEST_MESSAGE, m.MAVLINK_MSG_ID_AUTOPILOT_VERSION)
+    assert flown.answer("AUTOPILOT_VERSION")[1] == pytest.approx(DT)
+
+
 def test_without_a_channel_an_answer_comes_in_the_same_step():
     flown = Flown()
     flown.command(m.MAV_CMD_REQUEST_MESSAGE, m.MAVLINK_MSG_ID_AUTOPILOT_VERSION)

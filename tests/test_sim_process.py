@@ -296,7 +296,7 @@ BAD_MISSION = 'schema = 1\n[[obstacle]]\nshape = "cone"\nname = "x"\n'
         (("--airframe", "no_such"), "no such airframe; give a .toml file or one of: "),
         (("--mission", "no/such/file.toml"), "cannot be read"),
         (("--mission", "{bad}"), "shape"),
-        (("--channel", "loss=2"), "--channel: loss=2: '2' is not a number from 0 to 1."),
+        (("--channel", "loss=2"), "--channel: loss=2: '2' is not a number from 0 to 0.95."),
         (("--signing-key", "{bad}"), "others may read this key"),
         (("--signing-key", "{key}", "--speed", "2"), "signatures carry the clock's time; leave --speed out."),
         (("--instances", "0"), "'0' is not a whole number from 1 to 250"),
@@ -614,3 +614,13 @@ def test_after_a_long_stop_no_more_than_the_limit_is_caught_up():
         pacer.wait()
         ticks += 1
     assert ticks * 0.004 == pytest.approx(CATCH_UP_S, abs=0.009)
+
+
+def test_a_reader_of_the_list_that_goes_is_no_error():
+    """As `python -m sim --list-airframes | head -1` does."""
+    with subprocess.Popen(
+        [sys.executable, "-m", "sim", "--list-airframes"], stdout=subprocess.PIPE, stderr=subprocess.PIPE
+    ) as listing:
+        listing.stdout.close()
+        assert listing.stderr.read() == b""
+        assert listing.wait(20) == 0

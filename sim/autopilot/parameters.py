@@ -121,17 +121,20 @@ _PX4: dict[str, Spec] = {
 # The simulator's own. The channel per direction, UP toward the vehicle: delay and jitter, s; shares of frames
 # lost, doubled and reordered; bytes a second (0: no limit). A blackout of so many seconds from now, which goes back
 # to 0 by itself. The wind: where the air goes to, m/s, and the strength of its turbulence, m/s.
+# None may close the channel for good: a ground station must be able to take it back. Bytes a second from 1 to
+# `LEAST_RATE` count as `LEAST_RATE`; whole silences are blackouts, which end.
+LEAST_RATE = 1000.0
 _CHANNEL = {
     "DELAY": Spec(0.0, 0.0, 10.0),
     "JITTER": Spec(0.0, 0.0, 10.0),
-    "LOSS": Spec(0.0, 0.0, 1.0),
+    "LOSS": Spec(0.0, 0.0, 0.95),
     "DUP": Spec(0.0, 0.0, 1.0),
     "REORD": Spec(0.0, 0.0, 1.0),
     "RATE": Spec(0.0, 0.0, 1e9),
 }
 _OWN: dict[str, Spec] = {
     **{f"SIM_{way}_{name}": spec for way in ("UP", "DN") for name, spec in _CHANNEL.items()},
-    "SIM_NET_BLACK": Spec(0.0, 0.0, 3600.0),
+    "SIM_NET_BLACK": Spec(0.0, 0.0, 60.0),
     "SIM_WIND_E": Spec(0.0, -40.0, 40.0),
     "SIM_WIND_N": Spec(0.0, -40.0, 40.0),
     "SIM_WIND_U": Spec(0.0, -40.0, 40.0),

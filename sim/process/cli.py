@@ -162,7 +162,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Run the vehicles until they are told to end; return the exit code."""
     asked = build_parser().parse_args(arguments)
     if asked.list_airframes:
-        return _list_airframes()
+        try:
+            return _list_airframes()
+        except BrokenPipeError:
+            # Whoever read the list has gone (`| head`); that is no error of ours.
+            sys.stderr.close()
+            return 0
     from sim.process.fleet import Ending, run
     from sim.process.status_line import on_stdout
 
@@ -269,7 +274,7 @@ def _introduction(vehicles: Sequence[Vehicle]) -> str:
 def _list_airframes() -> int:
     for path in sorted(PRESETS_FOLDER.glob(f"*{SUFFIX}")):
         airframe = load_airframe(path.stem)
-        print(f"{path.stem:12} {airframe.title}: {', '.join(airframe.models())}")  # noqa: T201
+        print(f"{path.stem:12} {airframe.title}: {', '.join(airframe.models())}", flush=True)  # noqa: T201
     return 0
 
 

@@ -6,8 +6,9 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
+from drivers.vectors import slewed
 from groundstation.config import Limits
-from groundstation.pilot.limits import Bounds, Motion, SetpointLimiter, SetpointMotion, approach, slewed
+from groundstation.pilot.limits import Bounds, Motion, SetpointLimiter, SetpointMotion, approach
 
 ROUND = 1 + 1e-9
 bounds = st.builds(Bounds, st.floats(0.1, 10), st.floats(0.1, 20), st.floats(1, 200))

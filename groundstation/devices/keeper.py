@@ -135,7 +135,7 @@ class DeviceKeeper:
 
     def _open_device(self) -> None:
         """Open the device, aside. Until `_opened` is set, nothing else touches it."""
-        self._fault = "The device's driver failed; see the pilot's log."
+        self._fault = "The device's driver failed while opening it; see the traceback in this program's log."
         try:
             self._device.close()
             self._device.open()

@@ -5,10 +5,9 @@ from __future__ import annotations
 import threading
 import time
 from collections.abc import Callable
-from math import hypot
 
 from drivers.device import ZERO3, HandleState, HapticDevice, Vector3
-from drivers.vectors import finite, within
+from drivers.vectors import finite, slewed, within
 from groundstation.clock import Clock, Pacer
 from groundstation.devices.keeper import DeviceKeeper, Start, in_thread
 from groundstation.messages import Severity
@@ -86,7 +85,7 @@ class DeviceLoop:
                 self._samples.append(state.position)
             wanted = self.push(now)
             limit = min(GENTLE_N, self.keeper.info.force_limit)
-            self.force = _towards(self.force, within(wanted, limit) if finite(wanted) else ZERO3, _SLEW * dt)
+            self.force = slewed(self.force, within(wanted, limit) if finite(wanted) else ZERO3, _SLEW * dt)
         self.keeper.write(self.force)
 
     def _run(self) -> None:
@@ -104,12 +103,3 @@ class DeviceLoop:
 
     def _hear(self, _severity: Severity, words: str) -> None:
         self.words = words
-
-
-def _towards(force: Vector3, target: Vector3, step: float) -> Vector3:
-    x, y, z = (b - a for a, b in zip(force, target, strict=True))
-    distance = hypot(x, y, z)
-    if distance <= step:
-        return target
-    share = step / distance
-    return force[0] + share * x, force[1] + share * y, force[2] + share * z

@@ -7,13 +7,11 @@ imaginary part.
 
 from __future__ import annotations
 
-from math import hypot, isfinite
+from math import isfinite
 from typing import NamedTuple
 
-from drivers.device import Vector3
 from groundstation import config
 from groundstation.frames import Vector4
-from groundstation.pilot.feedback import scaled
 
 # Closer than this to the target nothing is worth a push, m/s or rad/s.
 _THERE = 1e-12
@@ -145,19 +143,3 @@ def _shortened(value: complex, length: float) -> complex:
 def _along(value: complex, direction: complex) -> float:
     """Return the scalar product."""
     return value.real * direction.real + value.imag * direction.imag
-
-
-def slewed(force: Vector3, target: Vector3, step: float) -> Vector3:
-    """Move a force straight towards a target by at most `step`, N.
-
-    Raises:
-        ValueError: The target is not finite.
-    """
-    x, y, z = target[0] - force[0], target[1] - force[1], target[2] - force[2]
-    distance = hypot(x, y, z)
-    if not isfinite(distance):
-        raise ValueError(f"The force {target} is not finite; no hand may feel it.")
-    if distance <= step:
-        return target
-    x, y, z = scaled((x, y, z), step / distance)
-    return force[0] + x, force[1] + y, force[2] + z

@@ -9,12 +9,13 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from drivers.device import ZERO3, DeviceInfo, HandleState, Vector3
+from drivers.vectors import slewed
 from groundstation.config import Settings
 from groundstation.frames import Vector4
 from groundstation.messages import Phase
 from groundstation.pilot.controller import check_gains, position_error, velocity_reference
 from groundstation.pilot.feedback import hand_force, position_force, scaled
-from groundstation.pilot.limits import SetpointLimiter, SetpointMotion, slewed
+from groundstation.pilot.limits import SetpointLimiter, SetpointMotion
 from groundstation.pilot.mapping import RateMapping, advance, leashed
 from groundstation.pilot.passivity import Port, observed, passive, passive_gains, physical_damping
 from groundstation.pilot.sight import ZERO4, Sight, VehicleSample, look

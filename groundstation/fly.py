@@ -12,7 +12,7 @@ from typing import NoReturn
 
 import msgspec
 
-from groundstation.config import load_settings
+from groundstation.config import Settings, load_settings
 from groundstation.errors import InputError
 from groundstation.processes import free_port, running
 from groundstation.run import Run
@@ -70,7 +70,7 @@ def plan(asked: argparse.Namespace) -> Run:
     run_id = new_run_id()
     device = _device(asked, run_id)
     if asked.device:
-        _check_device(device)
+        _check_device(device, settings)
     return Run(
         run_id=run_id,
         url=url,
@@ -148,13 +148,13 @@ def _check_channel(text: str) -> None:
         raise InputError(f"--channel: {error}") from error
 
 
-def _check_device(uri: str) -> None:
-    """Refuse a device that no driver knows. One that is only not plugged in yet is waited for."""
+def _check_device(uri: str, settings: Settings) -> None:
+    """Refuse a device or settings that no driver knows. One that is only not plugged in yet is waited for."""
     from drivers.device import DeviceError
-    from drivers.registry import make_device
+    from groundstation.devices.making import flight_device
 
     try:
-        make_device(uri)
+        flight_device(uri, settings)
     except DeviceError as error:
         raise InputError(f"--device: {error}") from error
 

@@ -137,18 +137,35 @@ def test_every_option_has_help():
         assert action.help or action.dest == "command"
 
 
-def test_a_device_that_no_driver_knows_is_told_before_anything_starts():
+@pytest.mark.parametrize(
+    ("device", "settings", "says"),
+    [("theremin", "", "theremin"), ("falcon", "[devices.falcon]\nfrimware = 'x'\n", "frimware")],
+)
+def test_a_device_or_setting_that_no_driver_knows_is_told_before_anything_starts(
+    tmp_path, device, settings, says
+):
     # The screen needs a terminal, so this runs in one.
     import os
     import pty
 
+    config = tmp_path / "settings.toml"
+    config.write_text(settings)
     controller, terminal = pty.openpty()
-    command = [sys.executable, "-m", "groundstation.cli", "--sim", "--device", "theremin"]
+    command = [
+        sys.executable,
+        "-m",
+        "groundstation.cli",
+        "--sim",
+        "--device",
+        device,
+        "--config",
+        str(config),
+    ]
     done = subprocess.run(
         command, stdin=terminal, stdout=terminal, stderr=subprocess.PIPE, text=True, timeout=60, check=False
     )
     os.close(controller)
     os.close(terminal)
     assert done.returncode == 2
-    assert "theremin" in done.stderr
+    assert says in done.stderr
     assert len(done.stderr.strip().splitlines()) == 1

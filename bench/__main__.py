@@ -21,6 +21,7 @@ BENCHES = {
     "falcon": "the Falcon's driver: exactness, spoilt bytes, cost of a tick",
     "servo": "pace of the servo on an emulated device, against a bare C loop",
     "passivity": "energy at the haptic port with delay and loss",
+    "shield": "full-stick adversaries through obstacle fields, with and without the guard",
 }
 
 

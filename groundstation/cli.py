@@ -13,6 +13,7 @@ from typing import NoReturn
 
 from groundstation import __version__
 from groundstation.errors import InputError
+from groundstation.evaluation import options
 
 PROGRAM = "groundstation"
 EXIT_BAD_INPUT = 2
@@ -25,6 +26,8 @@ examples:
   groundstation --connect udpin://0.0.0.0:14540              fly a real PX4 vehicle
   groundstation --connect serial:///dev/ttyUSB0:57600        the same through a radio
   groundstation review                                       look at the last flight
+  groundstation report --paper                               the paper's figures, flown anew
+  groundstation evaluate --delay 0,0.1,0.3                   compare controllers over hundreds of virtual flights
   groundstation missions list                                what there is to fly
 
 exit codes: 0 done, or the mission's criteria hold; 1 they do not, or a process died; 2 bad input
@@ -57,6 +60,16 @@ def build_parser() -> argparse.ArgumentParser:
             description="Open a recording in the Rerun viewer; without one, the newest.",
         )
     )
+    _fill_report(commands.add_parser("report", help="the paper's figures, flown anew", description=_REPORT))
+    options.fill(
+        commands.add_parser(
+            "evaluate",
+            help="compare controllers over many flights in virtual time",
+            description=options.DESCRIPTION,
+            epilog=options.EXAMPLES,
+            formatter_class=_RAW,
+        )
+    )
     _fill_missions(commands.add_parser("missions", help="list or check missions"))
     _fill_devices(
         commands.add_parser(
@@ -81,6 +94,9 @@ examples:
   groundstation devices emulate falcon          a Falcon's double; prints what to give to --device
 """
 _RAW = argparse.RawDescriptionHelpFormatter
+_REPORT = """\
+Fly the paper's experiments on the simulated vehicle, in virtual time, and write its figures 9 to 13 with their
+numbers as one page. Exit code 0 when every bar holds."""
 _COMPLETION = """\
 Print a completion script. For bash:
   groundstation completion bash > ~/.local/share/bash-completion/completions/groundstation"""
@@ -100,6 +116,12 @@ def _add_flight(parser: argparse.ArgumentParser) -> None:
     )
     flight.add_argument(
         "--device", metavar="NAME[:ADDRESS]", help="haptic device (default: the on-screen stick)"
+    )
+    flight.add_argument(
+        "--controller",
+        default="paper",
+        metavar="MODULE:CLASS",
+        help="your own controller; see docs/control.md (default: the paper's)",
     )
     flight.add_argument(
         "--headless", action="store_true", help="no screen: the scripted hand flies the mission"
@@ -138,6 +160,17 @@ def _fill_review(review: argparse.ArgumentParser) -> None:
     review.add_argument("--list", action="store_true", help="list the recorded flights, newest first")
     review.add_argument("--web", action="store_true", help="serve the viewer to a browser on this machine")
     review.add_argument("--logs", type=Path, default=Path("logs"), metavar="DIR", help="where recordings are")
+
+
+def _fill_report(report: argparse.ArgumentParser) -> None:
+    report.add_argument("--paper", action="store_true", required=True, help="on the paper's experiments")
+    report.add_argument(
+        "--out", type=Path, default=Path("paper.html"), metavar="FILE", help="the page (default: paper.html)"
+    )
+    report.add_argument("--pdf", action="store_true", help="write a PDF beside it too")
+    report.add_argument(
+        "--seed", type=int, default=0, metavar="N", help="seed of all that is random (default: 0)"
+    )
 
 
 def _fill_missions(missions: argparse.ArgumentParser) -> None:
@@ -204,6 +237,14 @@ def _dispatch(parser: argparse.ArgumentParser, asked: argparse.Namespace) -> int
         return _devices(asked)
     if asked.command == "review":
         return _review(asked)
+    if asked.command == "evaluate":
+        from groundstation.evaluation import command
+
+        return command.evaluate(asked)
+    if asked.command == "report":
+        from groundstation.review import paper
+
+        return paper.report(asked.out, asked.seed, pdf=asked.pdf)
     if not asked.sim and not asked.connect:
         parser.print_help()
         return EXIT_BAD_INPUT

@@ -20,6 +20,8 @@ Limit = Annotated[float, Meta(gt=0, le=1_000)]
 Gains4 = tuple[Gain, Gain, Gain, Gain]
 Gains3 = tuple[Gain, Gain, Gain]
 Limits4 = tuple[Limit, Limit, Limit, Limit]
+Limits3 = tuple[Limit, Limit, Limit]
+Button = Annotated[int, Meta(ge=-1, le=31)]
 
 CONFIG_NAME = "groundstation.toml"
 
@@ -29,41 +31,141 @@ class ConfigError(InputError):
 
 
 class Mapping(Struct, frozen=True, forbid_unknown_fields=True):
-    """From the handle to ṗ_h: rate control.
+    """From the handle to ṗ_h and p_h.
 
     Attributes:
+        mode: To begin with; *rate*: displacement gives a speed; *position*: the handle's travel, scaled, is p_h's.
         frame: Axes the handle moves along: the world's (the paper) or the vehicle's heading.
-        deadband: Displacement that means nothing, as a share of the workspace.
+        deadband: Displacement that means nothing in rate mode, as a share of the workspace.
         expo: 0 linear, 1 cubic: finer near the centre.
-        speed: ṗ_h at full displacement, m/s and rad/s.
+        speed: ṗ_h at full displacement, m/s and rad/s; its yaw holds in position mode too.
+        scale: In position mode, m of p_h a metre of the handle's travel, on each axis.
+        fine: What fine leaves of `speed` and `scale`.
         yaw_range: Rotation of the handle that gives the full yaw rate, rad.
         leash: Largest distance of p_h from the last seen p, m.
         leash_yaw: Likewise in yaw, rad.
     """
 
+    mode: Literal["rate", "position"] = "rate"
     frame: Literal["world", "heading"] = "heading"
     deadband: Annotated[float, Meta(ge=0, le=0.5)] = 0.05
     expo: Annotated[float, Meta(ge=0, le=1)] = 0.3
     speed: Limits4 = (2.0, 2.0, 1.0, 0.8)
+    scale: Limits3 = (20.0, 20.0, 10.0)
+    fine: Annotated[float, Meta(gt=0, le=1)] = 0.3
     yaw_range: Annotated[float, Meta(gt=0, le=3.1)] = 1.0
     leash: Limit = 1.5
     leash_yaw: Annotated[float, Meta(gt=0, le=3.1)] = 0.8
 
 
-class Control(Struct, frozen=True, forbid_unknown_fields=True):
-    """Equations (4) and (5).
+class Buttons(Struct, frozen=True, forbid_unknown_fields=True):
+    """What the handle's buttons do: the number of each, from 0, or −1 for none.
 
     Attributes:
-        k1: Diagonal of K₁, 1/s in effect.
-        stiffness: k_x, k_y, k_z: force on the hand a metre of position error, N/m.
-        damping: Force against the handle's velocity, N·s/m; no more of it is used than the device renders passively.
-        passivity: Keep the hand from being given more energy than it gave; off only to see what happens without.
+        clutch: While it is held the handle moves nothing: index as with a mouse.
+        fine: While it is held, fine.
+        mapping: Switches between rate and position.
+        turn_left, turn_right: Turn at the full yaw rate while held, for a handle without rotation.
     """
 
+    clutch: Button = 0
+    fine: Button = 1
+    mapping: Button = 4
+    turn_left: Button = 2
+    turn_right: Button = 3
+
+
+class Control(Struct, frozen=True, forbid_unknown_fields=True):
+    """Equations (4) and (5), and what may stand around them.
+
+    Attributes:
+        preset: Which cues, guard and compensation to begin with; see `groundstation.pilot.presets`.
+        k1: Diagonal of K₁, 1/s in effect; less where the delay leaves no phase margin for it.
+        phase_margin_deg: What the position loop keeps of phase at its crossover, degrees.
+        stiffness: k_x, k_y, k_z: force on the hand a metre of position error, N/m.
+        damping: Force against the handle's velocity, N·s/m; no more of it is used than the device renders passively.
+        passivity: What keeps the hand from being given more energy than it gave: time-domain *observer*, *wave*
+            variables, a two-layer energy *tank*, or *off*, only to see what happens without.
+        k3, k4: Diagonals of the dynamic compensation: pull of a small velocity error, 1/s, and its most, m/s².
+        airframe: Preset or file whose χ is compensated on a vehicle that is not simulated; "" for none.
+    """
+
+    preset: Literal["paper", "assisted", "transparent", "training"] = "assisted"
     k1: Gains4 = (1.2, 1.2, 1.2, 1.0)
+    phase_margin_deg: Annotated[float, Meta(ge=5, le=80)] = 45.0
     stiffness: Gains3 = (4.0, 4.0, 4.0)
     damping: Annotated[float, Meta(ge=0, le=50)] = 0.4
-    passivity: bool = True
+    passivity: Literal["observer", "wave", "tank", "off"] = "observer"
+    k3: Gains4 = (2.5, 2.5, 2.5, 2.5)
+    k4: Gains4 = (2.0, 2.0, 2.0, 2.0)
+    airframe: str = ""
+
+
+class Cues(Struct, frozen=True, forbid_unknown_fields=True):
+    """Gains of the force cues beside equation (5); a preset gives each its weight.
+
+    Attributes:
+        environment: Push away from what is nearer than `reach`, N a metre nearer.
+        reach: m from the hull.
+        mismatch: Force a m/s between the velocity asked for and the one flown, N·s/m.
+        guard: k of k (u_safe − u_cmd), N·s/m.
+        part_limit: Largest norm of any one cue, N.
+    """
+
+    environment: Gain = 5.0
+    reach: Limit = 1.2
+    mismatch: Gain = 1.0
+    guard: Gain = 2.5
+    part_limit: Limit = 6.0
+
+
+class Shield(Struct, frozen=True, forbid_unknown_fields=True):
+    """What keeps the velocity asked for out of obstacles and fence, and above the floor.
+
+    Attributes:
+        guard: A control *barrier*; a parametric *risk_field* in its place, to compare; or *off*.
+        margin: Kept between hull and obstacle, m.
+        braking: Share of `limits.acceleration` that it counts on for braking.
+        floor: Lowest altitude of the vehicle's middle, m.
+        ceiling: Highest, m; 0 for none.
+        fence: Largest distance from the origin in the plane, m; 0 for none.
+    """
+
+    guard: Literal["barrier", "risk_field", "off"] = "barrier"
+    margin: Annotated[float, Meta(ge=0, le=10)] = 0.25
+    braking: Annotated[float, Meta(gt=0, le=1)] = 0.5
+    floor: Annotated[float, Meta(ge=0, le=100)] = 0.5
+    ceiling: Annotated[float, Meta(ge=0, le=1_000)] = 0.0
+    fence: Annotated[float, Meta(ge=0, le=100_000)] = 0.0
+
+
+class Link(Struct, frozen=True, forbid_unknown_fields=True):
+    """How gains and speed fall as the link worsens; between good and poor they fall evenly.
+
+    Attributes:
+        assumed_delay_s: Round trip until the first is measured.
+        good_delay_s, poor_delay_s, hold_delay_s: Round trip up to which all is given, from which the least is, and
+            from which the vehicle holds.
+        good_loss, poor_loss, hold_loss: Likewise the share of frames lost.
+        least_gain: Share of stiffness and cues that a poor link leaves.
+        least_speed: Share of the speed limits that it leaves.
+    """
+
+    assumed_delay_s: Annotated[float, Meta(gt=0, le=1)] = 0.1
+    good_delay_s: Annotated[float, Meta(gt=0, le=5)] = 0.2
+    poor_delay_s: Annotated[float, Meta(gt=0, le=5)] = 0.8
+    hold_delay_s: Annotated[float, Meta(gt=0, le=5)] = 1.2
+    good_loss: Annotated[float, Meta(ge=0, lt=1)] = 0.05
+    poor_loss: Annotated[float, Meta(ge=0, lt=1)] = 0.4
+    hold_loss: Annotated[float, Meta(gt=0, le=1)] = 0.7
+    least_gain: Annotated[float, Meta(gt=0, le=1)] = 0.4
+    least_speed: Annotated[float, Meta(gt=0, le=1)] = 0.3
+
+    def __post_init__(self) -> None:
+        for name in ("delay_s", "loss"):
+            good, poor, hold = (getattr(self, f"{word}_{name}") for word in ("good", "poor", "hold"))
+            if not good < poor < hold:
+                raise ValueError(f"good_{name}, poor_{name}, hold_{name} must rise; they are {good}, {poor}, {hold}")
 
 
 class Limits(Struct, frozen=True, forbid_unknown_fields=True):
@@ -123,8 +225,12 @@ class Settings(Struct, frozen=True, forbid_unknown_fields=True):
     """
 
     mapping: Mapping = Mapping()
+    buttons: Buttons = Buttons()
     control: Control = Control()
+    cues: Cues = Cues()
+    shield: Shield = Shield()
     limits: Limits = Limits()
+    link: Link = Link()
     safety: Safety = Safety()
     rates: Rates = Rates()
     devices: dict[str, dict[str, Any]] = {}

@@ -64,6 +64,7 @@ def plan(asked: argparse.Namespace) -> Run:
     mission = _with_vehicle(load_mission(path), asked) if path else None
     if mission:
         _check_vehicle(mission.vehicle, simulated=asked.sim)
+    _check_controller(asked.controller, settings)
     url = asked.connect or f"udpin://127.0.0.1:{free_port()}"
     parse_url(url)
     now = datetime.datetime.now().astimezone()
@@ -81,6 +82,7 @@ def plan(asked: argparse.Namespace) -> Run:
         settings=settings,
         log=str(_log_stem(asked.logs, now, mission)),
         viewer_url=_viewer(asked),
+        controller=asked.controller,
         terminal="" if asked.headless else terminal_path(),
         started=now.isoformat(timespec="milliseconds"),
     )
@@ -157,6 +159,20 @@ def _check_device(uri: str, settings: Settings) -> None:
         flight_device(uri, settings)
     except DeviceError as error:
         raise InputError(f"--device: {error}") from error
+
+
+def _check_controller(spec: str, settings: Settings) -> None:
+    """Refuse a controller or an airframe to compensate that cannot be had."""
+    from groundstation.pilot.guest import load_controller
+    from sim.airframe import load_airframe
+    from sim.scenario import ScenarioError
+
+    load_controller(spec, settings)
+    try:
+        if settings.control.airframe:
+            load_airframe(settings.control.airframe)
+    except ScenarioError as error:
+        raise InputError(f"control.airframe: {error}") from error
 
 
 def _sim_options(asked: argparse.Namespace) -> tuple[str, ...]:

@@ -39,6 +39,11 @@ def heading_from_yaw(yaw: float) -> float:
     return math.degrees(math.pi / 2 - yaw) % 360.0
 
 
+def angle_from_bearing(bearing_deg: float) -> float:
+    """Turn a bearing (clockwise from forward, degrees) into an angle (counter-clockwise from forward, rad)."""
+    return wrap(-math.radians(bearing_deg))
+
+
 def body_from_world(vector: Vector3, yaw: float) -> Vector3:
     """Turn a world vector onto the vehicle's axes: J⁻¹(θ) of equation (3) on its first three rows."""
     east, north, up = vector

@@ -22,6 +22,9 @@ _U8 = ctypes.c_uint8
 EVENT_TEXT = 240
 ANSWER_TEXT = 200
 REASON_TEXT = 160
+NAME_TEXT = 49
+# Sectors of the ring in `Ranges`, as many as MAVLink's OBSTACLE_DISTANCE has room for.
+RING_SECTORS = 72
 
 
 class Record(ctypes.Structure):
@@ -81,6 +84,37 @@ class CommandKind(IntEnum):
     ENGAGE = 7
     DISENGAGE = 8
     KILL = 9
+    MAPPING = 10
+    FINE = 11
+    CLUTCH = 12
+    PRESET = 13
+    CUES = 14
+
+
+class MappingMode(IntEnum):
+    """How the handle moves p_h; the value of a MAPPING command."""
+
+    RATE = 0
+    POSITION = 1
+
+
+class Preset(IntEnum):
+    """Which cues and helps there are; the value of a PRESET command."""
+
+    PAPER = 0
+    ASSISTED = 1
+    TRANSPARENT = 2
+    TRAINING = 3
+
+
+class Cue(IntFlag):
+    """The parts of the force; the value of a CUES command is those that are on."""
+
+    POSITION = 1
+    ENVIRONMENT = 2
+    MISMATCH = 4
+    GUARD = 8
+    DAMPING = 16
 
 
 class Severity(IntEnum):
@@ -146,15 +180,33 @@ class Setpoint(Record):
 
 
 class PilotState(Record):
-    """The inside of the controller, 50 Hz: equations (4) and (5) term by term.
+    """The inside of the controller, 50 Hz: equations (4) and (5) term by term, and what stands around them.
 
     Attributes:
-        v_ref: As equation (4) gives it, vehicle's axes; `Setpoint` has it within limits.
+        v_ref: As the controller gives it, vehicle's axes; equation (4) unless another controller flies.
+        v_safe: The same after the guard.
+        v_c: That within the limits: the velocity that the vehicle is meant to have. `Setpoint` makes it have it.
         force: As equation (5) gives it, world, N; `Handle` has what is rendered, damped, ramped and limited.
+        environment, mismatch, guard: The other cues as they are weighted into the force, world, N.
+        damping: Likewise against the handle's velocity, handle frame, N.
         state_age: Age of the vehicle's state, s; infinite before the first.
+        delay: Round trip that the controller reckons with, s.
+        predicted: Where the vehicle will be when what is sent now reaches it, world, m and rad.
+        predicted_velocity: Its velocity then, world, m/s.
+        stop: Where it would come to rest from there with a centred handle, world, m.
+        push: Acceleration by wind and all else that the model does not know, world, m/s².
+        k1: Diagonal of K₁ in effect, 1/s.
+        phase_margin: Of the position loop, rad.
+        gain_share, speed_share: What the link's state leaves of gains and speed, 0 to 1.
         port_energy: What the hand has given through the haptic port and not been given back, J.
         dissipated: What the passivity controller has taken out of the force so far, J.
         centred: The handle is where engaging is possible.
+        mapping, preset, cues: A `MappingMode`, a `Preset`, and those of `Cue` that are on.
+        fine, clutched: The handle moves finely; it moves nothing.
+        waiting: The handle moves nothing until it has been in its centre, after a switch to rate mode or the clutch.
+        guarding: The guard changes what the hand asks for.
+        compensated: The vehicle's dynamics are compensated.
+        guarded_by: What the guard keeps away from: an obstacle's name, "floor", "ceiling", "fence", "sensor".
         reason: Why the hand was last uncoupled, or could not be coupled; empty while it is.
     """
 
@@ -162,13 +214,37 @@ class PilotState(Record):
     p_h_rate: ctypes.Array[_F64]
     error: ctypes.Array[_F64]
     v_ref: ctypes.Array[_F64]
+    v_safe: ctypes.Array[_F64]
+    v_c: ctypes.Array[_F64]
     force: ctypes.Array[_F64]
+    environment: ctypes.Array[_F64]
+    mismatch: ctypes.Array[_F64]
+    guard: ctypes.Array[_F64]
+    damping: ctypes.Array[_F64]
+    predicted: ctypes.Array[_F64]
+    predicted_velocity: ctypes.Array[_F64]
+    stop: ctypes.Array[_F64]
+    push: ctypes.Array[_F64]
+    k1: ctypes.Array[_F64]
     state_age: float
+    delay: float
+    phase_margin: float
+    gain_share: float
+    speed_share: float
     port_energy: float
     dissipated: float
     phase: int
     on_leash: int
     centred: int
+    mapping: int
+    preset: int
+    cues: int
+    fine: int
+    clutched: int
+    waiting: int
+    guarding: int
+    compensated: int
+    guarded_by: bytes
     reason: bytes
     _fields_ = (
         ("t", _F64),
@@ -176,13 +252,37 @@ class PilotState(Record):
         ("p_h_rate", _F64 * 4),
         ("error", _F64 * 4),
         ("v_ref", _F64 * 4),
+        ("v_safe", _F64 * 4),
+        ("v_c", _F64 * 4),
         ("force", _F64 * 3),
+        ("environment", _F64 * 3),
+        ("mismatch", _F64 * 3),
+        ("guard", _F64 * 3),
+        ("damping", _F64 * 3),
+        ("predicted", _F64 * 4),
+        ("predicted_velocity", _F64 * 3),
+        ("stop", _F64 * 3),
+        ("push", _F64 * 3),
+        ("k1", _F64 * 4),
         ("state_age", _F64),
+        ("delay", _F64),
+        ("phase_margin", _F64),
+        ("gain_share", _F64),
+        ("speed_share", _F64),
         ("port_energy", _F64),
         ("dissipated", _F64),
         ("phase", _U8),
         ("on_leash", _U8),
         ("centred", _U8),
+        ("mapping", _U8),
+        ("preset", _U8),
+        ("cues", _U8),
+        ("fine", _U8),
+        ("clutched", _U8),
+        ("waiting", _U8),
+        ("guarding", _U8),
+        ("compensated", _U8),
+        ("guarded_by", ctypes.c_char * NAME_TEXT),
         ("reason", ctypes.c_char * REASON_TEXT),
     )
 
@@ -204,6 +304,30 @@ class VehicleState(Record):
         ("pitch", _F64),
         ("boot_t", _F64),
         ("valid", _U8),
+    )
+
+
+class Ranges(Record):
+    """What the vehicle's own distance sensors see, about 10 Hz where it has any (`t` is the arrival).
+
+    Distances are from the vehicle's middle, m: infinite where there is nothing, NaN where it is not known.
+
+    Attributes:
+        ring: On its level, by sectors of 5°, counter-clockwise; the middle of the first is forward.
+        below, above: Straight down and up.
+        limit: How far the ring sees, m; NaN without one.
+    """
+
+    ring: ctypes.Array[_F64]
+    below: float
+    above: float
+    limit: float
+    _fields_ = (
+        ("t", _F64),
+        ("ring", _F64 * RING_SECTORS),
+        ("below", _F64),
+        ("above", _F64),
+        ("limit", _F64),
     )
 
 
@@ -254,12 +378,23 @@ class VehicleStatus(Record):
 
 
 class Command(Record):
-    """An act of the operator. Every one gets one `CommandAnswer`."""
+    """An act of the operator. Every one gets one `CommandAnswer`.
+
+    Attributes:
+        value: What a MAPPING, PRESET or CUES command chooses; of FINE and CLUTCH 1 for on, 0 for off; else 0.
+    """
 
     number: int
     kind: int
+    value: int
     source: bytes
-    _fields_ = (("t", _F64), ("number", _U64), ("kind", _U8), ("source", ctypes.c_char * 16))
+    _fields_ = (
+        ("t", _F64),
+        ("number", _U64),
+        ("kind", _U8),
+        ("value", _U8),
+        ("source", ctypes.c_char * 16),
+    )
 
 
 class CommandAnswer(Record):
@@ -408,6 +543,7 @@ SETPOINT = Topic("setpoint", Setpoint, depth=256, wakes=True)
 PILOT_STATE = Topic("pilot_state", PilotState, depth=256)
 VEHICLE_STATE = Topic("vehicle_state", VehicleState, depth=1024)
 VEHICLE_STATUS = Topic("vehicle_status", VehicleStatus, depth=256)
+OBSTACLES = Topic("obstacles", Ranges)
 COMMAND = Topic("command", Command, history=0)
 COMMAND_ANSWER = Topic("command_answer", CommandAnswer, history=0)
 EVENT = Topic("event", Event, depth=256, history=32)

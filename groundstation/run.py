@@ -28,6 +28,7 @@ class Run(Struct, frozen=True):
         log: Path of the recording without suffix; `.rrd` and `.tlog` are beside each other.
         viewer_url: A live Rerun viewer to stream to, or "".
         terminal: The terminal the screen is on, or "": who is left gives it back when the screen is killed.
+        controller: What flies, as `module:Class`, or "paper".
         started: Wall-clock time of the start, ISO 8601.
     """
 
@@ -42,6 +43,7 @@ class Run(Struct, frozen=True):
     viewer_url: str
     started: str
     terminal: str = ""
+    controller: str = "paper"
 
     @property
     def hand(self) -> Path | None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from math import exp, sin, tau
 from random import Random
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 from drivers.arm import Arm, ArmState, stop
 from drivers.device import DeviceInfo, HandleState
@@ -19,6 +19,7 @@ DEVICE = DeviceInfo("test", "", 4, 0.1, 10.0, 1000.0, 1000.0, "force")
 # A light handle in a loose grip: what little resists a force that should not be there.
 LOOSE = Arm(mass=0.2, stiffness=20.0)
 TELEMETRY_TICKS = 20
+Mode = Literal["observer", "wave", "tank", "off"]
 LAG_S = 0.4
 
 
@@ -60,25 +61,38 @@ class Way:
         return value
 
 
-def least_energy(
-    link: Link, *, passivity: bool, seconds: float = 20.0, seed: int = 0, arm: Arm = LOOSE
-) -> float:
-    """Return the least energy, J, that the hand's account at the port ever held; negative: it was given some.
+class HapticRun(NamedTuple):
+    """What a run did to the hand.
 
-    The hand sweeps for a while and then rests, the vehicle is blown about, and every tick's f·Δx is counted.
+    Attributes:
+        least_energy: That the hand's account at the port ever held, J; negative: the hand was given some.
+        felt_moving: Share of equation (5)'s force that was felt while the hand swept, Σ f·f₅ / Σ f₅·f₅.
+        felt_resting: Likewise while it rested.
     """
+
+    least_energy: float
+    felt_moving: float
+    felt_resting: float
+
+
+def haptic_run(
+    link: Link, *, passivity: Mode, seconds: float = 20.0, seed: int = 0, arm: Arm = LOOSE
+) -> HapticRun:
+    """Let a hand sweep for a while and then rest, with a vehicle that is blown about; count every tick's f·Δx."""
     random = Random(seed)
-    pilot = Pilot(Settings(control=Control(stiffness=(8.0, 8.0, 8.0), passivity=passivity)), DEVICE)
+    control = Control(preset="paper", stiffness=(8.0, 8.0, 8.0), passivity=passivity)
+    pilot = Pilot(Settings(control=control), DEVICE)
     memory, state = Memory(), ArmState()
     up, down = Way(link, random), Way(link, random)
     p, v, setpoint, sample = (0.0,) * 4, (0.0,) * 4, (0.0,) * 4, VehicleSample()
     phases = [random.uniform(0.0, tau) for _ in range(3)]
     energy = least = 0.0
+    felt, wanted = [0.0, 0.0], [1e-12, 1e-12]
     for tick in range(round(seconds / DT)):
         t = tick * DT
         handle = HandleState(state.position, state.velocity, 0.0, 0, homed=True, device_time=t)
-        age = t - down.came_t
-        memory, out = pilot.step(memory, Inputs(DT, Phase.ENGAGED, False, handle, sample, age))
+        inputs = Inputs(DT, Phase.ENGAGED, False, handle, sample, t - down.came_t, delay=2.0 * link.delay)
+        memory, out = pilot.step(memory, inputs)
         if tick % TELEMETRY_TICKS == 0:
             up.send(t, out.setpoint)
             down.send(t, VehicleSample(p, world_rates(v, p[3])))
@@ -88,10 +102,20 @@ def least_energy(
         v = tuple(a + share * (b - a) for a, b in zip(v, setpoint, strict=True))
         gust = [0.5 * sin(0.9 * t + phase) for phase in phases]
         p = (p[0] + (v[0] + gust[0]) * DT, p[1] + (v[1] + gust[1]) * DT, p[2] + (v[2] + gust[2]) * DT, 0.0)
-        reach = 0.06 if t < 0.6 * seconds else 0.0
+        resting = t >= 0.6 * seconds
+        reach = 0.0 if resting else 0.06
         intention = tuple(reach * sin(1.7 * t + phase) for phase in phases)
         moved = stop(arm.step(state, DT, intention, 0.0, out.force), DEVICE.workspace)
         energy -= sum(f * (b - a) for f, a, b in zip(out.force, state.position, moved.position, strict=True))
         least = min(least, energy)
+        felt[resting] += sum(f * g for f, g in zip(out.force, out.position_force, strict=True))
+        wanted[resting] += sum(g * g for g in out.position_force)
         state = moved
-    return least
+    return HapticRun(least, felt[0] / wanted[0], felt[1] / wanted[1])
+
+
+def least_energy(
+    link: Link, *, passivity: Mode, seconds: float = 20.0, seed: int = 0, arm: Arm = LOOSE
+) -> float:
+    """Return the least energy, J, that the hand's account at the port ever held in a run."""
+    return haptic_run(link, passivity=passivity, seconds=seconds, seed=seed, arm=arm).least_energy

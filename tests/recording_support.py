@@ -17,11 +17,14 @@ from groundstation.messages import (
     EVENT,
     HANDLE,
     HEARTBEAT,
+    RING_SECTORS,
     Event,
     FlightMode,
     Handle,
     Phase,
     PilotState,
+    Preset,
+    Ranges,
     Setpoint,
     Stream,
     VehicleState,
@@ -132,11 +135,36 @@ def a_handle(t: float, tick: int) -> Handle:
     return record
 
 
-def a_pilot_state(t: float, *, phase: Phase = Phase.ENGAGED, on_leash: bool = False) -> PilotState:
+def a_pilot_state(
+    t: float, *, phase: Phase = Phase.ENGAGED, on_leash: bool = False, guarding: bool = False
+) -> PilotState:
     record = PilotState(t=t, state_age=0.02, phase=phase, on_leash=on_leash, centred=1)
     record.p_h[:] = (2.0, 3.0, 2.5, 0.5)
     record.error[:] = (0.5, 1.0, 0.5, 0.1)
     record.v_ref[:] = (0.1, 0.2, 0.3, 0.4)
+    record.v_safe[:] = (0.05, 0.2, 0.3, 0.4)
+    record.v_c[:] = (0.04, 0.2, 0.3, 0.4)
+    record.force[:] = (0.0, 3.0, 4.0)
+    record.environment[:] = (-1.0, 0.0, 0.0)
+    record.mismatch[:] = (0.0, -2.0, 0.0)
+    record.guard[:] = (0.0, 0.0, 3.0)
+    record.damping[:] = (0.1, 0.2, 0.2)
+    record.predicted[:] = (2.5, 2.5, 2.0, 0.4)
+    record.predicted_velocity[:] = (1.0, 0.5, 0.0)
+    record.stop[:] = (3.0, 2.75, 2.0)
+    record.push[:] = (0.1, -0.2, 0.0)
+    record.k1[:] = (1.2, 1.2, 1.1, 1.0)
+    record.delay, record.phase_margin, record.gain_share, record.speed_share = 0.31, 0.8, 0.9, 0.7
+    record.preset, record.cues, record.guarding, record.guarded_by = Preset.ASSISTED, 31, guarding, b"crate"
+    return record
+
+
+def a_ranges(t: float, **distances: float) -> Ranges:
+    """Return what sensors see: nothing around but what is said of a sector, 1.5 m below, and nothing known above."""
+    record = Ranges(t=t, below=1.5, above=float("nan"), limit=12.0)
+    record.ring[:] = [float("inf")] * RING_SECTORS
+    for sector, distance in distances.items():
+        record.ring[int(sector.removeprefix("at"))] = distance
     return record
 
 

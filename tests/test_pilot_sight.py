@@ -1,5 +1,5 @@
 from itertools import pairwise
-from math import pi, sin
+from math import inf, pi, sin
 
 import pytest
 from hypothesis import given
@@ -40,6 +40,12 @@ def test_at_a_steady_velocity_it_is_exact() -> None:
 
 def test_the_first_sample_is_taken_as_it_is() -> None:
     assert watch({0: VehicleSample((5.0, 6.0, 7.0, 1.0))}, 1) == [(5.0, 6.0, 7.0, 1.0)]
+
+
+def test_the_first_sample_is_taken_as_it_is_after_any_time_without_one() -> None:
+    sight, _ = look(Sight(), VehicleSample(), inf, DT)
+    _, position = look(sight, VehicleSample((5.0, 6.0, 7.0, 1.0)), 0.0, DT)
+    assert position == (5.0, 6.0, 7.0, 1.0)
 
 
 def test_a_sample_that_disagrees_is_faded_in_over_50_ms() -> None:

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from itertools import pairwise
-from math import atanh, dist, exp, hypot, nan, pi, sin, tau
+from math import atanh, dist, exp, hypot, inf, isfinite, nan, pi, sin, tau
 
 import numpy as np
 import pytest
@@ -13,7 +13,7 @@ from drivers.device import ZERO3, DeviceInfo, HandleState
 from groundstation.config import Control, Mapping, Settings
 from groundstation.messages import Phase
 from groundstation.pilot.controller import position_error, world_rates
-from groundstation.pilot.passivity import Port
+from groundstation.pilot.passivity.port import Port
 from groundstation.pilot.pilot import Inputs, Memory, Outputs, Pilot
 from groundstation.pilot.sight import VehicleSample
 
@@ -144,7 +144,8 @@ def test_on_engaging_p_h_starts_at_p_and_the_force_comes_in_from_zero() -> None:
 def test_the_ramp_holds_the_force_back_for_its_time() -> None:
     flight = Flight()
     flight.step(hand())
-    flight.memory = flight.memory._replace(p_h=(0.0, -2.0, 3.0, 0.0), presence=0.0)
+    reference = flight.memory.reference._replace(p_h=(0.0, -2.0, 3.0, 0.0))
+    flight.memory = flight.memory._replace(reference=reference, presence=0.0)
     flight.blocked = True
     forces = [hypot(*outputs.force) for outputs in flight.run(0.2, hand())]
     for tick, force in enumerate(forces[:100]):
@@ -192,13 +193,34 @@ def test_a_cut_leaves_no_force_in_the_very_same_tick(phase: Phase) -> None:
 
 
 def test_what_is_not_finite_flies_nothing_and_presses_on_nothing() -> None:
+    for phase in Phase:
+        flight = Flight()
+        flight.phase = phase
+        for broken in (hand(x=nan), hand(yaw=inf), hand(y=-inf)):
+            held = flight.step(broken)
+            assert held.setpoint == (0.0, 0.0, 0.0, 0.0)
+            assert held.force == ZERO3
+            assert held.fault == "the handle gave a number that is not finite"
+        flight.sample = VehicleSample((0.0, nan, 0.0, 0.0))
+        flight.telemetry = False
+        assert flight.step(hand(x=0.1)).fault == "the vehicle gave a number that is not finite"
+        # What came before is not spoilt: the next sound tick flies again.
+        flight.telemetry, flight.tick = True, 0
+        sound = flight.run(0.5, hand(x=0.1))[-1]
+        assert not sound.fault
+        assert all(map(isfinite, (*sound.setpoint, *sound.force, *sound.p_h)))
+        assert (sound.setpoint[0] > 0.5) is (phase is Phase.ENGAGED)
+
+
+def test_a_position_too_old_to_fly_by_gives_a_zero_setpoint() -> None:
     flight = Flight()
-    with pytest.raises(ValueError, match="not finite"):
-        flight.step(hand(x=nan))
-    flight.phase = Phase.DISENGAGED
-    idle = flight.step(hand(x=nan))
-    assert idle.setpoint == (0.0, 0.0, 0.0, 0.0)
-    assert idle.force == ZERO3
+    assert flight.run(1.0, hand(x=0.1))[-1].setpoint[0] > 0.5
+    flight.telemetry = False
+    old = flight.run(0.6, hand(x=0.1))
+    assert old[400].setpoint[0] > 0.5
+    assert old[-1].setpoint == (0.0, 0.0, 0.0, 0.0)
+    assert old[-1].force == ZERO3
+    assert old[-1].fault == "the vehicle's position is 0.6 s old"
 
 
 def test_a_gain_that_is_not_positive_is_refused_on_building() -> None:
@@ -253,7 +275,7 @@ scenes = st.lists(
 @given(scenes, st.sampled_from(["world", "heading"]))
 @settings(deadline=None)
 def test_whatever_hand_and_vehicle_do_every_limit_holds(scenes: list, frame: str) -> None:
-    settings = Settings(mapping=Mapping(frame=frame), control=Control(passivity=False))
+    settings = Settings(mapping=Mapping(frame=frame), control=Control(passivity="off"))
     pilot, memory = Pilot(settings, INFO), Memory()
     limits, mapping = SETTINGS.limits, SETTINGS.mapping
     force, velocity, coupled = ZERO3, (0.0, 0.0, 0.0, 0.0), False
@@ -267,7 +289,7 @@ def test_whatever_hand_and_vehicle_do_every_limit_holds(scenes: list, frame: str
             error = position_error(out.p_h, out.p)
             assert hypot(*error[:3]) <= mapping.leash + 1e-9
             assert abs(error[3]) <= mapping.leash_yaw + 1e-9
-            if phase is Phase.ENGAGED:
+            if phase is Phase.ENGAGED and age <= SETTINGS.safety.state_stale_s:
                 before = velocity if coupled else (0.0, 0.0, 0.0, 0.0)
                 assert dist(out.setpoint[:2], before[:2]) <= limits.acceleration * DT * (1 + 1e-9)
                 assert hypot(*out.setpoint[:2]) <= limits.horizontal_speed * (1 + 1e-9)
@@ -275,7 +297,8 @@ def test_whatever_hand_and_vehicle_do_every_limit_holds(scenes: list, frame: str
                 assert abs(out.setpoint[3]) <= limits.yaw_rate * (1 + 1e-9)
             else:
                 assert out.setpoint == (0.0, 0.0, 0.0, 0.0)
-            force, velocity, coupled = out.force, out.setpoint, phase is Phase.ENGAGED
+            force, velocity = out.force, out.setpoint
+            coupled = phase is Phase.ENGAGED and not out.fault
 
 
 @pytest.mark.parametrize("force_limit", [0.0, 3.0, 20.0])

@@ -12,12 +12,13 @@ import pytest
 import rerun as rr
 from hypothesis import given
 from hypothesis import strategies as st
-from recording_support import a_handle, a_pilot_state, a_setpoint, a_status, a_vehicle_state
+from recording_support import a_handle, a_pilot_state, a_ranges, a_setpoint, a_status, a_vehicle_state
 
 from groundstation.messages import (
     HANDLE,
     HEARTBEAT,
     MISSION_PROGRESS,
+    OBSTACLES,
     PILOT_STATE,
     SERVO_REPORT,
     SETPOINT,
@@ -31,9 +32,10 @@ from groundstation.messages import (
     Topic,
 )
 from groundstation.pilot.controller import vehicle_rates as control_law
-from groundstation.recording import schema
+from groundstation.recording import entities, schema
 from groundstation.recording.batch import Batch
 from groundstation.recording.columns import Buttons, Heartbeats, number_chunks, vehicle_rates
+from groundstation.recording.echoes import Echoes
 from groundstation.recording.item import Chunk
 from groundstation.recording.motion import Motion, Trail, quaternions
 from groundstation.recording.session import start_of
@@ -76,6 +78,7 @@ def full_batch() -> Batch:
         (PILOT_STATE, [a_pilot_state(t)]),
         (VEHICLE_STATE, [a_vehicle_state(t)]),
         (VEHICLE_STATUS, [a_status(t)]),
+        (OBSTACLES, [a_ranges(t, at0=3.0, at18=2.0)]),
         (SERVO_REPORT, [servo]),
         (MISSION_PROGRESS, [progress]),
     )
@@ -100,6 +103,24 @@ def test_numbers_stand_where_the_schema_says():
         schema.HANDLE_POSITION: [7e-6, -7e-6, 0.01, 7e-4],
         schema.HANDLE_FORCE: [7e-3, 2.0, -3.0],
         schema.ERROR: [0.5, 1.0, 0.5, 0.1],
+        schema.V_SAFE: [0.05, 0.2, 0.3, 0.4],
+        schema.V_C: [0.04, 0.2, 0.3, 0.4],
+        schema.K1: [1.2, 1.2, 1.1, 1.0],
+        schema.PHASE_MARGIN: [0.8],
+        schema.SHARES: [0.9, 0.7],
+        schema.ENVIRONMENT_CUE: [-1.0, 0.0, 0.0],
+        schema.MISMATCH_CUE: [0.0, -2.0, 0.0],
+        schema.GUARD_CUE: [0.0, 0.0, 3.0],
+        schema.DAMPING_CUE: [0.1, 0.2, 0.2],
+        schema.CUE_SIZES: [5.0, 1.0, 2.0, 3.0, 0.3],
+        schema.CUES_ON: [31],
+        schema.PREDICTED: [2.5, 2.5, 2.0, 0.4],
+        schema.PREDICTED_VELOCITY: [1.0, 0.5, 0.0],
+        schema.STOP: [3.0, 2.75, 2.0],
+        schema.PUSH: [0.1, -0.2, 0.0],
+        schema.RECKONED: [0.31],
+        schema.RANGES: [2.0, 1.5, math.nan, 12.0],
+        schema.RING: [3.0, *[math.inf] * 17, 2.0, *[math.inf] * 53],
         schema.HANDLE_AGE: [0.004],
         schema.POSITION: [1.0, 2.0, 3.0, 0.4],
         schema.ATTITUDE: [0.1, -0.2],
@@ -231,14 +252,14 @@ def test_hand_leash_and_force_are_shown_while_engaged_and_cleared_after():
     pilot = [a_pilot_state(START + 0.01), a_pilot_state(START + 0.03, phase=Phase.DISENGAGED)]
     motion = Motion(START, heading=True)
     chunks = by_path(motion.chunks(batch_of((HANDLE, [handle]), (PILOT_STATE, pilot))))
-    npt.assert_allclose(component(chunks[schema.HAND], "Points3D:positions")[0], [(2.0, 3.0, 2.5)])
+    npt.assert_allclose(component(chunks[entities.HAND], "Points3D:positions")[0], [(2.0, 3.0, 2.5)])
     npt.assert_allclose(
-        component(chunks[schema.LEASH], "LineStrips3D:strips")[0], [[(1.5, 2.0, 2.0), (2.0, 3.0, 2.5)]]
+        component(chunks[entities.LEASH], "LineStrips3D:strips")[0], [[(1.5, 2.0, 2.0), (2.0, 3.0, 2.5)]]
     )
-    turn, scale = 0.4, schema.ARROW_M_PER_N
+    turn, scale = 0.4, entities.ARROW_M_PER_N
     arrow = (4.0 * math.cos(turn) * scale, 4.0 * math.sin(turn) * scale, scale)
-    npt.assert_allclose(component(chunks[schema.FORCE_ARROW], "Arrows3D:vectors")[0], [arrow], rtol=1e-6)
-    for path in (schema.HAND, schema.LEASH, schema.FORCE_ARROW):
+    npt.assert_allclose(component(chunks[entities.FORCE_ARROW], "Arrows3D:vectors")[0], [arrow], rtol=1e-6)
+    for path in (entities.HAND, entities.LEASH, entities.FORCE_ARROW):
         for column in chunks[path].columns:
             assert column.as_arrow_array().to_pylist()[1] == []
 
@@ -248,14 +269,47 @@ def test_force_is_not_turned_where_the_handle_moves_along_the_worlds_axes():
     handle.force[:] = (4.0, 0.0, 1.0)
     batch = batch_of((HANDLE, [handle]), (PILOT_STATE, [a_pilot_state(START + 0.01)]))
     chunks = by_path(Motion(START, heading=False).chunks(batch))
-    npt.assert_allclose(component(chunks[schema.FORCE_ARROW], "Arrows3D:vectors")[0], [(1.0, 0.0, 0.25)])
+    npt.assert_allclose(component(chunks[entities.FORCE_ARROW], "Arrows3D:vectors")[0], [(1.0, 0.0, 0.25)])
+
+
+def test_what_the_forecast_says_is_shown_while_engaged_and_cleared_after():
+    pilot = [a_pilot_state(START + 0.01), a_pilot_state(START + 0.03, phase=Phase.DISENGAGED)]
+    chunks = by_path(Motion(START, heading=True).chunks(batch_of((PILOT_STATE, pilot))))
+    npt.assert_allclose(component(chunks[entities.PREDICTED], "Points3D:positions")[0], [(2.5, 2.5, 2.0)])
+    npt.assert_allclose(component(chunks[entities.STOP], "Points3D:positions")[0], [(3.0, 2.75, 2.0)])
+    npt.assert_allclose(
+        component(chunks[entities.PROSPECT], "LineStrips3D:strips")[0],
+        [[(1.5, 2.0, 2.0), (2.5, 2.5, 2.0), (3.0, 2.75, 2.0)]],
+    )
+    for path in (entities.PREDICTED, entities.STOP, entities.PROSPECT):
+        for column in chunks[path].columns:
+            assert column.as_arrow_array().to_pylist()[1] == []
+
+
+def test_what_the_sensors_see_is_placed_from_where_the_vehicle_was_then():
+    echoes = Echoes(START)
+    first = a_vehicle_state(START, position=(1.0, 2.0, 3.0, math.pi / 2))
+    later = a_vehicle_state(START + 0.2, position=(5.0, 2.0, 3.0, 0.0))
+    before = a_ranges(START - 0.1, at0=2.0)
+    batch = batch_of(
+        (VEHICLE_STATE, [first, later]), (OBSTACLES, [before, a_ranges(START + 0.1, at0=2.0, at18=1.0)])
+    )
+    (chunk,) = echoes.chunks(batch)
+    unplaced, placed = component(chunk, "Points3D:positions")
+    assert unplaced == []
+    npt.assert_allclose(placed, [(1.0, 4.0, 3.0), (0.0, 2.0, 3.0), (1.0, 2.0, 1.5)], atol=1e-6)
+    # The vehicle's place is known from one batch to the next.
+    (chunk,) = echoes.chunks(batch_of((OBSTACLES, [a_ranges(START + 0.3, at36=1.0)])))
+    npt.assert_allclose(
+        component(chunk, "Points3D:positions")[0], [(4.0, 2.0, 3.0), (5.0, 2.0, 1.5)], atol=1e-6
+    )
 
 
 def test_an_invalid_state_moves_nothing():
     motion = Motion(START, heading=True)
     assert not list(motion.chunks(batch_of((VEHICLE_STATE, [a_vehicle_state(START, valid=False)]))))
     chunks = by_path(motion.chunks(batch_of((VEHICLE_STATE, [a_vehicle_state(START)]))))
-    npt.assert_allclose(component(chunks[schema.VEHICLE_POSE], "Transform3D:translation")[0], [(1, 2, 3)])
+    npt.assert_allclose(component(chunks[entities.VEHICLE_POSE], "Transform3D:translation")[0], [(1, 2, 3)])
 
 
 NOON = datetime.datetime(2026, 11, 22, 12, tzinfo=datetime.UTC)

@@ -16,7 +16,7 @@ from rerun.chunk import RrdReader
 
 from groundstation.errors import InputError
 from groundstation.messages import PILOT_STATE, VEHICLE_STATE, VEHICLE_STATUS, Severity
-from groundstation.recording import schema
+from groundstation.recording import entities, schema
 from groundstation.recording.live import free_tcp_port, listening
 from groundstation.recording.program import LOOPBACK, program
 from groundstation.review.flight import Flight
@@ -60,9 +60,13 @@ def test_a_flight_ended_properly_is_whole_and_has_every_row(tmp_path):
     npt.assert_array_equal(flight.series(schema.HANDLE_POSITION).values[:, 3], [r.yaw for r in sent])
     assert len(flight.series(schema.P_H).t) == 100
     assert [line.text for line in flight.events() if line.source == "test"] == ["Something happened."]
-    assert {schema.VEHICLE_TRAIL, schema.VEHICLE_POSE, schema.HAND, schema.LEASH, schema.FORCE_ARROW} <= set(
-        flight.entities
-    )
+    assert {
+        entities.VEHICLE_TRAIL,
+        entities.VEHICLE_POSE,
+        entities.HAND,
+        entities.LEASH,
+        entities.FORCE_ARROW,
+    } <= set(flight.entities)
     assert flight.mission == running.run.mission
     assert flight.settings == running.run.settings
     assert flight.properties()["schema"] == schema.VERSION

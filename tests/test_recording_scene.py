@@ -6,7 +6,7 @@ import numpy as np
 from canned_flight import canned_run
 from msgspec.structs import replace
 
-from groundstation.recording import schema
+from groundstation.recording import entities
 from groundstation.recording.scene import extent, static_scene
 from sim.scenario import Gate, Pad, Sphere, Wall
 
@@ -25,12 +25,12 @@ MISSION = replace(
 
 def test_every_part_of_an_obstacle_has_its_place():
     paths = [still.path for still in static_scene(MISSION)]
-    assert f"{schema.OBSTACLES}/red_balloon" in paths
-    assert f"{schema.OBSTACLES}/wall" in paths
+    assert f"{entities.OBSTACLES}/red_balloon" in paths
+    assert f"{entities.OBSTACLES}/wall" in paths
     assert [path for path in paths if "gate" in path] == [
-        f"{schema.OBSTACLES}/gate/{part}" for part in range(4)
+        f"{entities.OBSTACLES}/gate/{part}" for part in range(4)
     ]
-    assert f"{schema.PAD}/roof" in paths
+    assert f"{entities.PAD}/roof" in paths
     assert len(set(paths)) == len(paths)
 
 

@@ -34,7 +34,7 @@ def viewer():
 def test_no_view_complains(tmp_path, viewer):
     viewer.open(record(tmp_path))
     viewer.go_to(None)
-    for tab in range(3):
+    for tab in range(4):
         viewer.turn_tabs(tab)
         viewer.picture(tmp_path / f"{tab}.png")
         assert viewer.complaints() == []

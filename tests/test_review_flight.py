@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import lzma
 import math
+from pathlib import Path
 
 import numpy.testing as npt
 import pytest
 from recording_support import a_handle, a_pilot_state, a_run, a_status, a_vehicle_state
 
+from groundstation.config import Settings
 from groundstation.errors import InputError
 from groundstation.messages import (
     EVENT,
@@ -21,15 +24,17 @@ from groundstation.messages import (
     Heartbeat,
     Severity,
 )
-from groundstation.recording import schema
+from groundstation.recording import lanes, schema
 from groundstation.recording.batch import Batch
 from groundstation.recording.session import Session
+from groundstation.review.earlier import settings_from
 from groundstation.review.flight import Flight
 from groundstation.review.listing import list_flights
 from groundstation.review.rrd import is_growing, is_whole, mend, open_reader
 from groundstation.review.show import list_all, review, show
 
 WINDOW = {"DISPLAY": ":0"}
+RECORDINGS = Path(__file__).parent / "recordings"
 
 
 def a_batch(first: float, seconds: int) -> Batch:
@@ -76,7 +81,7 @@ def test_a_flight_reads_as_it_was_recorded(flight_file):
     assert values.shape == (2_000, 3)
     npt.assert_allclose(t[[0, -1]], [0.0, 1.999], atol=1e-9)
     npt.assert_allclose(values[999], (0.999, 2.0, -3.0))
-    assert flight.states(schema.MODE) == [(0.0, "hold"), (0.5, "offboard"), (1.0, "hold"), (1.5, "offboard")]
+    assert flight.states(lanes.MODE) == [(0.0, "hold"), (0.5, "offboard"), (1.0, "hold"), (1.5, "offboard")]
     assert flight.events()[0] == (0.25, "ERROR", "link", "Lost.")
     assert math.isclose(flight.duration, 2.0, abs_tol=1e-9)
     assert flight.mission
@@ -86,8 +91,41 @@ def test_a_flight_reads_as_it_was_recorded(flight_file):
 def test_what_was_never_recorded_is_empty_and_of_the_right_width(flight_file):
     flight = Flight(flight_file)
     assert flight.series(schema.SERVO_LATE).values.shape == (0, 3)
-    assert flight.states(schema.DEVICE_STATE) == []
+    assert flight.states(lanes.DEVICE_STATE) == []
     assert flight.properties(schema.DEVICE) == {}
+
+
+def test_a_recording_of_the_first_schema_still_opens_and_reads(tmp_path):
+    """Made by version 0.1.0, a tenth of a second of the same made-up flight as here."""
+    path = tmp_path / "old.rrd"
+    path.write_bytes(lzma.decompress((RECORDINGS / "flight_v1.rrd.xz").read_bytes()))
+    assert is_whole(open_reader(path))
+    (entry,) = list_flights(tmp_path)
+    assert (entry.mission, entry.duration) == ("paper", pytest.approx(0.1))
+    assert review(path, environment=WINDOW, spawn=lambda _: 0) == 0
+    flight = Flight(path)
+    assert flight.properties()["schema"] == 1
+    assert flight.series(schema.HANDLE_FORCE).values.shape == (20, 3)
+    assert flight.series(schema.ERROR).values[0] == pytest.approx((0.5, 1.0, 0.5, 0.1))
+    assert flight.states(lanes.PHASE) == [(0.0, "engaged")]
+    assert flight.events()[0] == (0.05, "ERROR", "link", "Lost.")
+    assert flight.mission
+    assert flight.mission.name == "paper"
+    # What there was not yet is empty; what there was is called as today.
+    assert flight.series(schema.V_SAFE).values.shape == (0, 4)
+    assert flight.series(schema.RING).values.shape == (0, 72)
+    assert flight.states(lanes.GUARD) == []
+    assert flight.settings.control.passivity == "observer"
+    assert flight.settings.control.preset == "paper"
+    assert flight.settings.shield.guard == "off"
+    assert flight.settings.control.stiffness == (4.0, 4.0, 4.0)
+
+
+def test_settings_of_a_later_schema_are_refused_in_a_sentence(flight_file):
+    properties = Flight(flight_file).properties()
+    assert settings_from(properties) == Settings()
+    with pytest.raises(InputError, match="schema 99, this program knows up to 2"):
+        settings_from(properties | {"schema": 99})
 
 
 def test_a_flight_without_a_mission_has_none(tmp_path):

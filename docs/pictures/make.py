@@ -1,4 +1,5 @@
-"""Make all pictures of README and docs: the screen from a canned flight, the viewer from a real one.
+"""Make all pictures of README and docs: the screen from a canned flight, the report's figures from virtual ones, the
+viewer from a real one.
 
 `make docs-pictures`. The viewer's picture needs a Vulkan driver (Debian: mesa-vulkan-drivers, libvulkan1).
 """
@@ -17,7 +18,8 @@ FLY = ("-m", "groundstation.cli", "--sim", "--headless", "--mission", "paper", "
 
 def main() -> None:
     """Make them."""
-    subprocess.run([sys.executable, HERE / "screen.py"], check=True)
+    for picture in ("screen.py", "paper.py"):
+        subprocess.run([sys.executable, HERE / picture], check=True)
     with tempfile.TemporaryDirectory() as logs:
         flown = subprocess.run(
             [sys.executable, *FLY, "--logs", logs],

@@ -1,4 +1,4 @@
-"""The paper's kinematics and control law: equations (3) and (4), component by component on plain floats.
+"""The contract of a controller, and the paper's: equations (3), (4) and (5), component by component on plain floats.
 
 World vectors are `[x, y, z, yaw]` (ENU; m, rad), the vehicle's `[forward, left, up, yaw_rate]` (FLU; m/s,
 rad/s).
@@ -8,8 +8,81 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from math import cos, isfinite, sin, tanh
+from typing import Any, NamedTuple, Protocol
 
+from drivers.device import Vector3
 from groundstation.frames import Vector4, wrap
+
+
+class View(NamedTuple):
+    """What a controller sees at one tick.
+
+    Attributes:
+        dt: Since the last tick, s.
+        p_h: Where the hand wants the drone, world, m and rad.
+        p_h_rate: ṗ_h, world, m/s and rad/s.
+        p: Where the drone is seen, p(t − d₁), world, m and rad.
+        velocity: As it was last told, world, m/s and rad/s.
+        error: p̃ = p_h − p, the yaw wrapped.
+        delay: Round trip, s.
+        k1: Diagonal of K₁ in effect, 1/s.
+        stiffness: k_x, k_y, k_z in effect, N/m.
+        predicted: Where the drone will be as what is sent now reaches it, world, m and rad.
+        predicted_velocity: Its velocity then, world, m/s.
+    """
+
+    dt: float
+    p_h: Vector4
+    p_h_rate: Vector4
+    p: Vector4
+    velocity: Vector4
+    error: Vector4
+    delay: float
+    k1: Vector4
+    stiffness: Vector3
+    predicted: Vector4
+    predicted_velocity: Vector3
+
+
+class Law(NamedTuple):
+    """What a controller answers.
+
+    Attributes:
+        v_ref: Velocity reference, vehicle's axes, m/s and rad/s.
+        force: For the hand, world, N.
+    """
+
+    v_ref: Vector4
+    force: Vector3
+
+
+class Controller(Protocol):
+    """Turns what the hand wants into a velocity for the drone and a force for the hand.
+
+    Around any controller stand the same reference generation, guard, limits, cues and passivity. All its memory is
+    its state, so that a flight in virtual time is the flight in real time.
+    """
+
+    def start(self) -> Any:  # noqa: ANN401 - the controller's own
+        """Return the state at the moment of engaging."""
+        ...
+
+    def step(self, state: Any, view: View, /) -> tuple[Any, Law]:  # noqa: ANN401
+        """Return the state for the next tick, and what to do in this one. Well within a millisecond."""
+        ...
+
+
+class PaperController:
+    """Equations (4) and (5). It has no state."""
+
+    def start(self) -> None:
+        """Return nothing."""
+        return
+
+    def step(self, state: None, view: View, /) -> tuple[None, Law]:
+        """Return v_ref = J⁻¹(θ) (ṗ_h + K₁ tanh(p̃)) and f = −K p̃."""
+        v_ref = velocity_reference(view.p_h_rate, view.error, view.p[3], view.k1)
+        return state, Law(v_ref, position_force(view.error, view.stiffness))
 
 
 def check_gains(name: str, gains: Sequence[float]) -> None:
@@ -66,3 +139,13 @@ def velocity_reference(p_h_rate: Vector4, error: Vector4, theta: float, k1: Vect
         ),
         theta,
     )
+
+
+def position_force(error: Vector4, stiffness: Vector3) -> Vector3:
+    """Return f = −K p̃ of equation (5), world, N.
+
+    Args:
+        error: p̃, world, m and rad; yaw has no part in equation (5).
+        stiffness: k_x, k_y, k_z, N/m.
+    """
+    return -stiffness[0] * error[0], -stiffness[1] * error[1], -stiffness[2] * error[2]

@@ -43,6 +43,7 @@ class Conditions(NamedTuple):
         state_age: Age of its state, s; infinite before the first.
         state_valid: It trusts that state itself.
         boots: How often it has rebooted since the servo started.
+        link_fault: Why the link is too poor to fly by, in words, or "".
     """
 
     t: float
@@ -60,6 +61,7 @@ class Conditions(NamedTuple):
     state_age: float
     state_valid: bool
     boots: int
+    link_fault: str = ""
 
 
 class Engagement(NamedTuple):
@@ -176,6 +178,8 @@ def vehicle_fault(c: Conditions, safety: Safety) -> str:
             if c.state_age < 1e6
             else ("the vehicle has not told its position")
         )
+    if c.link_fault:
+        return c.link_fault
     if not c.state_valid:
         return "the vehicle does not trust its own position"
     if not c.armed:

@@ -1,43 +1,103 @@
-"""What the hand feels: equation (5), f = −K p̃, and a little damping.
+"""What the hand feels: equation (5), f = −K p̃, and the other cues, each by itself and together.
 
 p̃ = p_h − p points from the drone to where the hand wants it. A drone that is blocked while the hand goes
 forward leaves p̃ pointing forward, so the force pushes the hand back. A drone that is blown along +x while the
 hand rests at the centre has p̃ₓ < 0 and fₓ > 0: the hand is drawn along with the drone, as the wind blows. In
 both cases giving way to the force moves p_h towards the drone.
+
+| cue | force | says |
+|---|---|---|
+| position | −K p̃ | how far the drone is from where the hand wants it |
+| environment | k (reach − h) n | something is near, and where away from it is |
+| mismatch | k (v − v_c) | the drone does not have the velocity it is meant to have |
+| guard | k (u_safe − u_cmd) | what the shield changes of what the hand asks for |
+| damping | −b ẋ | the handle's own velocity |
 """
 
 from __future__ import annotations
 
-from drivers.device import Vector3
+from typing import NamedTuple
+
+from drivers.device import ZERO3, Vector3
 from drivers.vectors import within
-from groundstation.frames import Vector4, body_from_world
+from groundstation import config
+from groundstation.messages import Cue
+from groundstation.pilot.nearby import Near
+from groundstation.pilot.presets import Weights
+
+# Plain numbers: flags of an enumeration are slow to combine.
+_POSITION, _ENVIRONMENT, _MISMATCH, _GUARD, _DAMPING = (int(cue) for cue in Cue)
 
 
-def position_force(error: Vector4, stiffness: Vector3) -> Vector3:
-    """Return f = −K p̃ of equation (5), world, N.
+class CueForces(NamedTuple):
+    """The cues as they go into the force, N, world; damping in the handle frame."""
 
-    Args:
-        error: p̃, world, m and rad; yaw has no part in equation (5).
-        stiffness: k_x, k_y, k_z, N/m.
-    """
-    return -stiffness[0] * error[0], -stiffness[1] * error[1], -stiffness[2] * error[2]
+    position: Vector3 = ZERO3
+    environment: Vector3 = ZERO3
+    mismatch: Vector3 = ZERO3
+    guard: Vector3 = ZERO3
+    damping: Vector3 = ZERO3
+
+    def total(self) -> Vector3:
+        """Return the sum of those in the world."""
+        a, b, c, d = self.position, self.environment, self.mismatch, self.guard
+        return a[0] + b[0] + c[0] + d[0], a[1] + b[1] + c[1] + d[1], a[2] + b[2] + c[2] + d[2]
 
 
-def hand_force(
-    force_world: Vector3, turn: float, velocity: Vector3, damping: float, force_limit: float
-) -> Vector3:
-    """Return the force to render, in the handle frame, N, no stronger than the device can.
+class Felt(NamedTuple):
+    """What the cues are made from.
 
-    Args:
-        force_world: From `position_force`.
-        turn: Angle from the world's axes to the handle's, as in the mapping, rad.
+    Attributes:
+        force: Equation (5), or what another controller has in its place, world, N.
+        nearest: What is nearest, if anything is.
+        mismatch: v − v_c, world, m/s.
+        guarded: u_safe − u_cmd, world, m/s.
         velocity: Of the handle, handle frame, m/s.
-        damping: Against it, N·s/m.
-        force_limit: Largest norm, N; a stronger force is shortened and keeps its direction.
     """
-    x, y, z = body_from_world(force_world, turn)
-    damped = (x - damping * velocity[0], y - damping * velocity[1], z - damping * velocity[2])
-    return within(damped, force_limit)
+
+    force: Vector3
+    nearest: Near | None
+    mismatch: Vector3
+    guarded: Vector3
+    velocity: Vector3
+
+
+class Feedback:
+    """Weighs the cues.
+
+    Args:
+        settings: Their gains.
+        damping: b, N·s/m, as the device renders it passively.
+    """
+
+    def __init__(self, settings: config.Cues, damping: float) -> None:
+        self._settings = settings
+        self._damping = damping
+
+    def cues(self, felt: Felt, weights: Weights, on: int, share: float) -> CueForces:
+        """Return each cue as it goes into the force.
+
+        Args:
+            felt: What they are made from.
+            weights: The preset's.
+            on: Those of `Cue` that are on.
+            share: Of the gains that link and device leave, 0 to 1; in equation (5) and in damping it is already.
+        """
+        settings, most = self._settings, self._settings.part_limit
+        position = environment = mismatch = guard = damping = ZERO3
+        if on & _POSITION:
+            position = scaled(felt.force, weights.position)
+        thing = felt.nearest
+        if on & _ENVIRONMENT and thing is not None and thing.gap < settings.reach:
+            push = settings.environment * (settings.reach - thing.gap) * weights.environment * share
+            environment = scaled(thing.normal, min(push, most))
+        if on & _MISMATCH and weights.mismatch:
+            mismatch = within(scaled(felt.mismatch, settings.mismatch * weights.mismatch * share), most)
+        if on & _GUARD and weights.guard and felt.guarded != ZERO3:
+            guard = within(scaled(felt.guarded, settings.guard * weights.guard * share), most)
+        if on & _DAMPING and weights.damping:
+            damping = scaled(felt.velocity, -weights.damping * self._damping)
+        return CueForces(position, environment, mismatch, guard, damping)
 
 
 def scaled(vector: Vector3, factor: float) -> Vector3:

@@ -7,7 +7,7 @@ imaginary part.
 
 from __future__ import annotations
 
-from math import isfinite
+from math import cos, isfinite, sin
 from typing import NamedTuple
 
 from groundstation import config
@@ -52,13 +52,16 @@ class SetpointLimiter:
         self._up = Bounds(limits.vertical_speed, limits.acceleration, limits.jerk)
         self._yaw = Bounds(limits.yaw_rate, limits.yaw_acceleration, limits.yaw_jerk)
 
-    def step(self, motion: SetpointMotion, v_ref: Vector4, dt: float) -> tuple[SetpointMotion, Vector4]:
+    def step(
+        self, motion: SetpointMotion, v_ref: Vector4, dt: float, share: float = 1.0
+    ) -> tuple[SetpointMotion, Vector4]:
         """Move the setpoint towards `v_ref` for `dt` s.
 
         Args:
             motion: Of the setpoint so far.
             v_ref: Commanded velocity on the vehicle's axes, m/s and rad/s.
             dt: s.
+            share: Of the speeds that may be asked for, 0 to 1; what is faster slows down within the limits.
 
         Returns:
             The setpoint's motion, and its velocity on the vehicle's axes.
@@ -70,15 +73,30 @@ class SetpointLimiter:
         if not isfinite(forward + left + up + yaw):
             raise ValueError(f"The velocity reference {v_ref} is not finite; nothing may follow it.")
         motion = SetpointMotion(
-            approach(motion.plane, complex(forward, left), self._plane, dt),
-            approach(motion.up, up, self._up, dt),
-            approach(motion.yaw, yaw, self._yaw, dt),
+            approach(motion.plane, complex(forward, left), self._plane, dt, share),
+            approach(motion.up, up, self._up, dt, share),
+            approach(motion.yaw, yaw, self._yaw, dt, share),
         )
         plane = motion.plane.velocity
         return motion, (plane.real, plane.imag, motion.up.velocity.real, motion.yaw.velocity.real)
 
+    @staticmethod
+    def turned(motion: SetpointMotion, angle: float) -> SetpointMotion:
+        """Return the same motion in space on the axes of a vehicle that has turned by an angle, rad."""
+        velocity, acceleration = motion.plane
+        if not (velocity or acceleration):
+            return motion
+        turn = complex(cos(angle), -sin(angle))
+        return SetpointMotion(Motion(velocity * turn, acceleration * turn), motion.up, motion.yaw)
 
-def approach(motion: Motion, target: complex, bounds: Bounds, dt: float) -> Motion:
+    def capped(self, v_ref: Vector4) -> Vector4:
+        """Return a velocity shortened to the largest speeds; vehicle's axes, m/s and rad/s."""
+        plane = _shortened(complex(v_ref[0], v_ref[1]), self._plane.speed)
+        up, yaw = self._up.speed, self._yaw.speed
+        return plane.real, plane.imag, max(-up, min(up, v_ref[2])), max(-yaw, min(yaw, v_ref[3]))
+
+
+def approach(motion: Motion, target: complex, bounds: Bounds, dt: float, share: float = 1.0) -> Motion:
     """Move a velocity towards a target within bounds, for `dt` s.
 
     Braking now, at full jerk, would take the velocity v with its acceleration a to `reach` = v + a|a|/2j. The
@@ -88,29 +106,34 @@ def approach(motion: Motion, target: complex, bounds: Bounds, dt: float) -> Moti
 
     Args:
         motion: Velocity and acceleration now, within bounds.
-        target: Commanded velocity; shortened to the largest speed.
+        target: Commanded velocity; shortened to `share` of the largest speed.
         bounds: Largest speed, acceleration, jerk.
         dt: s.
+        share: 0 to 1.
     """
-    target = _shortened(target, bounds.speed)
-    reach = _reach(motion, bounds.jerk)
-    gap = target - reach
+    v, a = motion
+    top, most, jerk = bounds
+    target = _shortened(target, top * share)
+    if v == target and not a:
+        return motion
+    gap = target - v - a * (abs(a) / (2.0 * jerk))
     distance = abs(gap)
-    rest = _braked(motion, bounds.jerk, dt)
     if distance < _THERE:
-        return rest
-    push = _pushed(motion, gap * (bounds.jerk * dt / distance), bounds.acceleration, dt)
-    beyond = _along(_reach(push, bounds.jerk) - target, gap) / distance
+        return _braked(motion, jerk, dt)
+    faster = _shortened(a + gap * (jerk * dt / distance), most)
+    after = v + (a + faster) * (0.5 * dt)
+    reach = after + faster * (abs(faster) / (2.0 * jerk))
+    over = reach - target
+    beyond = (over.real * gap.real + over.imag * gap.imag) / distance
     if beyond > 0.0:
         # `reach` grows faster than in proportion to the push, so this share of it never passes.
-        share = distance / (distance + beyond)
-        push = Motion(
-            rest.velocity + share * (push.velocity - rest.velocity),
-            rest.acceleration + share * (push.acceleration - rest.acceleration),
-        )
-    reach = _reach(push, bounds.jerk)
-    safe = abs(push.velocity) <= bounds.speed and abs(reach) <= bounds.speed
-    return push if safe and abs(target - reach) <= distance else rest
+        rest = _braked(motion, jerk, dt)
+        part = distance / (distance + beyond)
+        after = rest.velocity + part * (after - rest.velocity)
+        faster = rest.acceleration + part * (faster - rest.acceleration)
+        reach = after + faster * (abs(faster) / (2.0 * jerk))
+    safe = abs(after) <= top and abs(reach) <= top and abs(target - reach) <= distance
+    return Motion(after, faster) if safe else _braked(motion, jerk, dt)
 
 
 def _reach(motion: Motion, jerk: float) -> complex:
@@ -128,18 +151,6 @@ def _braked(motion: Motion, jerk: float, dt: float) -> Motion:
     return Motion(v + (a + slower) * (0.5 * dt), slower)
 
 
-def _pushed(motion: Motion, change: complex, acceleration: float, dt: float) -> Motion:
-    """Change the acceleration, up to its bound, steadily over the tick."""
-    v, a = motion
-    faster = _shortened(a + change, acceleration)
-    return Motion(v + (a + faster) * (0.5 * dt), faster)
-
-
 def _shortened(value: complex, length: float) -> complex:
     size = abs(value)
     return value if size <= length else value * (length / size)
-
-
-def _along(value: complex, direction: complex) -> float:
-    """Return the scalar product."""
-    return value.real * direction.real + value.imag * direction.imag

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from math import nan
+from typing import NamedTuple
+
 from drivers.device import ZERO3, DeviceInfo, HandleState, Vector3
 from groundstation.bus import Bus
 from groundstation.frames import Vector4
@@ -10,6 +13,7 @@ from groundstation.messages import (
     COMMAND_ANSWER,
     DEVICE_REPORT,
     HANDLE,
+    NAME_TEXT,
     PILOT_STATE,
     REASON_TEXT,
     SERVO_REPORT,
@@ -24,10 +28,22 @@ from groundstation.messages import (
     Setpoint,
     fit,
 )
+from groundstation.pilot.choices import Choices
+from groundstation.pilot.command import Commanded
+from groundstation.pilot.inputs import Inputs
 from groundstation.pilot.lateness import Figures
 from groundstation.pilot.pilot import Outputs
 
 _NAME, _RENDERS = 64, 16
+_UNKNOWN4 = (nan, nan, nan, nan)
+
+
+class Tick(NamedTuple):
+    """What a tick was made from, what it said, and where the vehicle would come to rest, world, m."""
+
+    inputs: Inputs
+    outputs: Outputs
+    stop: Vector3
 
 
 class Outbox:
@@ -78,24 +94,35 @@ class Outbox:
         record.active = active
         self._setpoints.send(record)
 
-    def pilot_state(
-        self, t: float, outputs: Outputs, state_age: float, phase: Phase, reason: str, *, centred: bool
-    ) -> None:
-        """Send the inside of the controller."""
-        record = self._state
+    def pilot_state(self, t: float, tick: Tick, phase: Phase, reason: str, *, centred: bool) -> None:
+        """Send the inside of the controller.
+
+        Args:
+            t: Now, monotonic s.
+            tick: What the tick was made from, and what it said.
+            phase: How far the hand is coupled.
+            reason: Why the hand was last uncoupled, or "".
+            centred: The handle is where engaging is possible.
+        """
+        record, (inputs, outputs, stop) = self._state, tick
         record.t = t
         record.p_h[:] = outputs.p_h
         record.p_h_rate[:] = outputs.p_h_rate
         record.error[:] = outputs.error
         record.v_ref[:] = outputs.v_ref
         record.force[:] = outputs.position_force
-        record.state_age = state_age
+        record.state_age = inputs.state_age
         record.port_energy = outputs.port.energy
         record.dissipated = outputs.port.dissipated
         record.phase = phase
         record.on_leash = outputs.on_leash
         record.centred = centred
         record.reason = fit(reason, REASON_TEXT)
+        _fill_choices(record, inputs.choices, waiting=outputs.reference.waiting)
+        _fill_command(record, outputs.commanded)
+        record.stop[:] = stop
+        _fill_forecast(record, outputs)
+        _fill_cues(record, outputs)
         self._states.send(record)
 
     def answer(self, t: float, command: Command, refusal: str) -> None:
@@ -125,3 +152,36 @@ class Outbox:
         record.ticks, record.missed = self._handle.tick, missed
         record.realtime = realtime
         self._servo_reports.send(record)
+
+
+def _fill_choices(record: PilotState, choices: Choices, *, waiting: bool) -> None:
+    record.mapping, record.preset, record.cues = choices.mapping, choices.preset, choices.cues
+    record.fine, record.clutched, record.waiting = choices.fine, choices.clutched, waiting
+
+
+def _fill_command(record: PilotState, commanded: Commanded) -> None:
+    record.v_safe[:] = commanded.safe
+    record.v_c[:] = commanded.meant
+    record.guarding = bool(commanded.by)
+    record.guarded_by = fit(commanded.by, NAME_TEXT)
+    record.compensated = commanded.compensated
+
+
+def _fill_forecast(record: PilotState, outputs: Outputs) -> None:
+    """Where nothing is flown, nothing is known of gains and delay either."""
+    forecast, terms = outputs.forecast, outputs.terms
+    record.predicted[:] = forecast.p
+    record.predicted_velocity[:] = forecast.velocity
+    record.push[:] = forecast.push
+    record.k1[:] = terms.loop.k1 if terms else _UNKNOWN4
+    record.phase_margin = terms.loop.margin if terms else nan
+    record.delay = terms.delay if terms else nan
+    record.gain_share, record.speed_share = (terms.gain, terms.speed) if terms else (1.0, 1.0)
+
+
+def _fill_cues(record: PilotState, outputs: Outputs) -> None:
+    cues = outputs.cues
+    record.environment[:] = cues.environment
+    record.mismatch[:] = cues.mismatch
+    record.guard[:] = cues.guard
+    record.damping[:] = cues.damping

@@ -6,42 +6,40 @@ virtual time, and both fly the same.
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from math import isfinite
+from typing import Any, NamedTuple
 
-from drivers.device import ZERO3, DeviceInfo, HandleState, Vector3
-from drivers.vectors import slewed
+from drivers.device import ZERO3, DeviceInfo, Vector3
+from drivers.vectors import slewed, within
 from groundstation.config import Settings
-from groundstation.frames import Vector4
-from groundstation.messages import Phase
-from groundstation.pilot.controller import check_gains, position_error, velocity_reference
-from groundstation.pilot.feedback import hand_force, position_force, scaled
-from groundstation.pilot.limits import SetpointLimiter, SetpointMotion
-from groundstation.pilot.mapping import RateMapping, advance, leashed
-from groundstation.pilot.passivity import Port, observed, passive, passive_gains, physical_damping
-from groundstation.pilot.sight import ZERO4, Sight, VehicleSample, look
+from groundstation.frames import Vector4, body_from_world
+from groundstation.messages import MappingMode, Phase
+from groundstation.pilot.command import Commanded, Commander, Commanding, Terms
+from groundstation.pilot.controller import (
+    Controller,
+    Law,
+    PaperController,
+    View,
+    check_gains,
+    position_error,
+    world_rates,
+)
+from groundstation.pilot.feedback import CueForces, Feedback, Felt, scaled
+from groundstation.pilot.forecast import Forecast, Forecaster, noted
+from groundstation.pilot.guest import ControllerError
+from groundstation.pilot.inputs import Inputs
+from groundstation.pilot.link_state import shares
+from groundstation.pilot.nearby import nearest
+from groundstation.pilot.passivity.choice import passivity_named
+from groundstation.pilot.passivity.gains import Gains, passive_gains
+from groundstation.pilot.passivity.port import Port
+from groundstation.pilot.presets import PRESETS
+from groundstation.pilot.reference import Reference, ReferenceGenerator
+from groundstation.pilot.sight import ZERO4, Sight, look
+from groundstation.pilot.surroundings import NOTHING_KNOWN, Surroundings
 
 # A force that must go is gone after this, whatever the device's limit: safely within 100 ms.
 FADE_S = 0.08
-
-
-class Inputs(NamedTuple):
-    """What one tick is made from; all numbers finite, as the engagement sees to.
-
-    Attributes:
-        dt: Since the last tick, s.
-        phase: How far the hand is coupled.
-        cut: No force from this very tick on, not even a fading one.
-        hand: The handle.
-        vehicle: The newest sample of the vehicle.
-        state_age: Its age, s.
-    """
-
-    dt: float
-    phase: Phase
-    cut: bool
-    hand: HandleState
-    vehicle: VehicleSample
-    state_age: float
 
 
 class Memory(NamedTuple):
@@ -49,16 +47,20 @@ class Memory(NamedTuple):
 
     Attributes:
         sight: Of the vehicle.
-        p_h: Where the hand wants the drone, world, m and rad.
-        motion: Of the setpoint, within limits.
+        forecast: Of it.
+        reference: p_h and ṗ_h.
+        state: The controller's own.
+        commanding: Of guard, limits and compensation.
         presence: Share of the force that is rendered; it grows after engaging.
         port: Account of the haptic port's energy; with the force on the hand.
         coupled: The last tick was an engaged one.
     """
 
     sight: Sight = Sight()
-    p_h: Vector4 = ZERO4
-    motion: SetpointMotion = SetpointMotion()
+    forecast: Forecast = Forecast()
+    reference: Reference = Reference()
+    state: Any = None
+    commanding: Commanding = Commanding()
     presence: float = 0.0
     port: Port = Port()
     coupled: bool = False
@@ -68,28 +70,65 @@ class Outputs(NamedTuple):
     """What one tick says and does.
 
     Attributes:
-        setpoint: For the vehicle: v_ref within limits, vehicle's axes, m/s and rad/s.
+        setpoint: For the vehicle, vehicle's axes, m/s and rad/s.
         port: The haptic port with the force for the hand.
-        p: Where the vehicle is at this tick, world, m and rad; see `groundstation.pilot.sight`.
-        p_h, p_h_rate, error, v_ref: The terms of equation (4).
-        position_force: Equation (5) as it stands, world, N.
-        on_leash: p_h wanted to go further from the vehicle than it may.
+        p: Where the vehicle is seen at this tick, world, m and rad; see `groundstation.pilot.sight`.
+        reference: p_h and ṗ_h.
+        error: p̃, world, m and rad.
+        law: What the controller answers: v_ref and force, equations (4) and (5).
+        commanded: What guard, limits and compensation make of v_ref.
+        cues: The parts of the force.
+        forecast: Where the vehicle will be.
+        terms: Gains, delay and shares that this tick is flown with; None while it is not flown.
+        fault: Why this tick could not be flown, in words; then the setpoint is zero and the force fades.
     """
 
     setpoint: Vector4
     port: Port
     p: Vector4
-    p_h: Vector4
-    p_h_rate: Vector4
-    error: Vector4
-    v_ref: Vector4
-    position_force: Vector3
-    on_leash: bool
+    reference: Reference
+    error: Vector4 = ZERO4
+    law: Law = Law(ZERO4, ZERO3)
+    commanded: Commanded = Commanded()
+    cues: CueForces = CueForces()
+    forecast: Forecast = Forecast()
+    terms: Terms | None = None
+    fault: str = ""
 
     @property
     def force(self) -> Vector3:
         """For the hand, handle frame, N: within the device's limit, slewed, ramped and passive."""
         return self.port.force
+
+    @property
+    def p_h(self) -> Vector4:
+        """Where the hand wants the drone, world, m and rad."""
+        return self.reference.p_h
+
+    @property
+    def p_h_rate(self) -> Vector4:
+        """ṗ_h, world, m/s and rad/s."""
+        return self.reference.rate
+
+    @property
+    def on_leash(self) -> bool:
+        """p_h wanted to go further from the vehicle than it may."""
+        return self.reference.on_leash
+
+    @property
+    def v_ref(self) -> Vector4:
+        """What the controller asks for, vehicle's axes, m/s and rad/s."""
+        return self.law.v_ref
+
+    @property
+    def v_safe(self) -> Vector4:
+        """The same after the guard."""
+        return self.commanded.safe
+
+    @property
+    def position_force(self) -> Vector3:
+        """Equation (5) as it stands, world, N."""
+        return self.law.force
 
 
 class Pilot:
@@ -98,30 +137,43 @@ class Pilot:
     Args:
         settings: Mapping, gains, limits, staleness.
         device: The device in hand.
+        surroundings: What is known of vehicle and world.
+        controller: The paper's unless given.
 
     Attributes:
-        gains: Stiffness and damping as set, or less where the device does not render so much passively.
+        gains: Of both mappings as set, or less where the device does not render so much passively.
 
     Raises:
         ValueError: A gain is not positive and finite.
     """
 
-    def __init__(self, settings: Settings, device: DeviceInfo) -> None:
+    def __init__(
+        self,
+        settings: Settings,
+        device: DeviceInfo,
+        surroundings: Surroundings = NOTHING_KNOWN,
+        controller: Controller | None = None,
+    ) -> None:
         check_gains("control.k1", settings.control.k1)
         check_gains("control.stiffness", settings.control.stiffness)
-        self.mapping = RateMapping(settings.mapping, device.workspace)
-        self._limiter = SetpointLimiter(settings.limits)
         self._settings = settings
         self._force_limit = device.force_limit
-        self._passive = settings.control.passivity and device.renders == "force"
-        self._damping_limit = physical_damping(device)
-        self.gains = passive_gains(settings, device)
+        self._passivity = passivity_named(settings.control.passivity, device)
+        self.gains: dict[MappingMode, Gains] = {
+            mode: passive_gains(settings, device, mode) for mode in MappingMode
+        }
+        self._feedback = {mode: Feedback(settings.cues, gains.damping) for mode, gains in self.gains.items()}
+        self._references = ReferenceGenerator(settings.mapping, settings.limits, device.workspace)
+        self._forecaster = Forecaster(surroundings.chi)
+        self._controller: Controller = controller or PaperController()
+        self._commander = Commander(settings, surroundings)
 
     def step(self, memory: Memory, inputs: Inputs) -> tuple[Memory, Outputs]:
         """Run one tick.
 
-        While not engaged, p_h stays with the vehicle, the setpoint is zero and the force fades. The limiter
-        begins at zero, for that is the setpoint the vehicle has been given until then, however it may drift.
+        While not engaged, or where anything that the tick depends on is not a finite number or too old, p_h stays
+        with the vehicle, the setpoint is zero and the force fades. The limiter begins at zero, for that is the
+        setpoint the vehicle has been given until then, however it may drift.
 
         Args:
             memory: Of the tick before; `Memory()` at the start.
@@ -129,48 +181,122 @@ class Pilot:
 
         Returns:
             Memory for the next tick, and what to do in this one.
-
-        Raises:
-            ValueError: An input that an engaged tick depends on is not finite.
         """
-        sight, p = look(memory.sight, inputs.vehicle, inputs.state_age, inputs.dt)
-        port = observed(memory.port, inputs.hand.position)
-        if inputs.phase is not Phase.ENGAGED:
-            port = self._held(port, self._faded(port.force, inputs.dt), inputs)
-            idle = Outputs(ZERO4, port, p, p, ZERO4, ZERO4, ZERO4, ZERO3, on_leash=False)
-            return Memory(sight, p_h=p, port=port), idle
-        mapping, hand, yaw = self._settings.mapping, inputs.hand, p[3]
-        rate = self.mapping.rate(hand.position, hand.yaw, yaw)
-        wished = advance(memory.p_h if memory.coupled else p, rate, inputs.dt)
-        p_h, on_leash = leashed(wished, p, mapping.leash, mapping.leash_yaw)
-        error = position_error(p_h, p)
-        v_ref = velocity_reference(rate, error, yaw, self._settings.control.k1)
-        motion, setpoint = self._limiter.step(memory.motion, v_ref, inputs.dt)
-        pull = position_force(error, self.gains.stiffness)
-        presence, wanted = self._rendered(memory.presence, port.force, inputs, pull, yaw)
+        port = self._passivity.observed(memory.port, inputs.hand.position)
+        fault = self._fault(inputs)
+        sight, p = memory.sight, memory.reference.p_h
+        if not fault:
+            sight, p = look(sight, inputs.vehicle, inputs.state_age, inputs.dt)
+            if inputs.phase is Phase.ENGAGED:
+                try:
+                    return self._flown(memory, inputs, sight, p, port)
+                except ControllerError as error:
+                    fault = str(error)
+        port = self._held(port, self._faded(port.force, inputs.dt), inputs)
+        reference = self._references.begun(p, inputs.hand, inputs.choices)
+        idle = Outputs(ZERO4, port, p, reference, forecast=Forecast(p=p), fault=fault)
+        return Memory(sight, reference=reference, port=port), idle
+
+    def stop(self, outputs: Outputs) -> Vector3:
+        """Return where the vehicle would come to rest if the handle went to its centre now, world, m."""
+        return self._commander.stop(outputs.forecast, compensated=outputs.commanded.compensated)
+
+    def _fault(self, inputs: Inputs) -> str:
+        """Return in words why nothing can be flown on these inputs, or ""."""
+        hand, (position, velocity) = inputs.hand, inputs.vehicle
+        # What is not finite stays so in a sum; what is too large to add is not believed either.
+        if not isfinite(sum(hand.position) + sum(hand.velocity) + hand.yaw + inputs.dt):
+            return "the handle gave a number that is not finite"
+        if not isfinite(sum(position) + sum(velocity)):
+            return "the vehicle gave a number that is not finite"
+        if inputs.phase is Phase.ENGAGED and not inputs.state_age <= self._settings.safety.state_stale_s:
+            return f"the vehicle's position is {inputs.state_age:.1f} s old"
+        return ""
+
+    def _flown(
+        self, memory: Memory, inputs: Inputs, sight: Sight, p: Vector4, port: Port
+    ) -> tuple[Memory, Outputs]:
+        """Run an engaged tick."""
+        choices = inputs.choices
+        terms = self._terms(memory, inputs)
+        begin = memory.reference if memory.coupled else self._references.begun(p, inputs.hand, choices)
+        reference = self._references.step(begin, inputs.hand, choices, p, dt=inputs.dt, share=terms.speed)
+        forecast = self._forecaster.look(
+            memory.forecast, inputs.vehicle, inputs.state_age, terms.delay, inputs.dt
+        )
+        view = self._view(inputs, reference, p, forecast, terms)
+        state = memory.state if memory.coupled else self._controller.start()
+        state, law = self._controller.step(state, view)
+        commanding, commanded = self._commander.step(memory.commanding, law.v_ref, forecast, inputs, terms)
+        cues = self._cues(inputs, law, commanded, p[3], terms)
+        presence, wanted = self._rendered(memory.presence, port.force, inputs, cues, p[3])
         port = self._held(port, wanted, inputs)
-        outputs = Outputs(setpoint, port, p, p_h, rate, error, v_ref, pull, on_leash)
-        return Memory(sight, p_h, motion, presence, port, coupled=True), outputs
+        forecast = noted(forecast, commanded.setpoint)
+        outputs = Outputs(
+            commanded.setpoint, port, p, reference, view.error, law, commanded, cues, forecast, terms
+        )
+        return Memory(sight, forecast, reference, state, commanding, presence, port, coupled=True), outputs
+
+    def _terms(self, memory: Memory, inputs: Inputs) -> Terms:
+        """Return the terms under which this tick is flown."""
+        link = self._settings.link
+        delay = inputs.delay if isfinite(inputs.delay) else link.assumed_delay_s
+        assistance = PRESETS[inputs.choices.preset]
+        left = shares(inputs.delay, inputs.loss, link)
+        loop = self._commander.loop(memory.commanding, delay, assistance)
+        return Terms(delay, assistance, loop, left.gain, left.speed * assistance.speed)
+
+    def _view(
+        self, inputs: Inputs, reference: Reference, p: Vector4, forecast: Forecast, terms: Terms
+    ) -> View:
+        return View(
+            inputs.dt,
+            reference.p_h,
+            reference.rate,
+            p,
+            inputs.vehicle.velocity,
+            position_error(reference.p_h, p),
+            terms.delay,
+            terms.loop.k1,
+            scaled(self.gains[inputs.choices.mapping].stiffness, terms.gain),
+            forecast.p,
+            forecast.velocity,
+        )
+
+    def _cues(self, inputs: Inputs, law: Law, commanded: Commanded, yaw: float, terms: Terms) -> CueForces:
+        """Return the parts of the force. The link's share is in equation (5) already, by its stiffness."""
+        choices, vehicle, weights = inputs.choices, inputs.vehicle, terms.assistance.weights
+        guarded = mismatch = ZERO3
+        if commanded.by:
+            (a, b, c, d), (e, f, g, h) = commanded.safe, law.v_ref
+            x, y, z, _ = world_rates((a - e, b - f, c - g, d - h), yaw)
+            guarded = (x, y, z)
+        if weights.mismatch:
+            x, y, z, _ = world_rates(commanded.then, vehicle.position[3])
+            u, v, w, _ = vehicle.velocity
+            mismatch = (u - x, v - y, w - z)
+        felt = Felt(law.force, nearest(commanded.near), mismatch, guarded, inputs.hand.velocity)
+        share = terms.gain * self.gains[choices.mapping].share
+        return self._feedback[choices.mapping].cues(felt, weights, choices.cues, share)
 
     def _rendered(
-        self, presence: float, force: Vector3, inputs: Inputs, pull: Vector3, vehicle_yaw: float
+        self, presence: float, force: Vector3, inputs: Inputs, cues: CueForces, vehicle_yaw: float
     ) -> tuple[float, Vector3]:
         """Return the force's presence and the force: it comes in gently and leaves with a stale state."""
         dt, settings = inputs.dt, self._settings
         if not inputs.state_age <= settings.safety.force_stale_s:
             return 0.0, self._faded(force, dt)
         presence = min(1.0, presence + dt / settings.limits.force_ramp_s)
-        turn = self.mapping.turn(vehicle_yaw)
-        wanted = hand_force(pull, turn, inputs.hand.velocity, self.gains.damping, self._force_limit)
+        x, y, z = body_from_world(cues.total(), self._references.by_rate.turn(vehicle_yaw))
+        u, v, w = cues.damping
+        wanted = within((x + u, y + v, z + w), self._force_limit)
         return presence, slewed(force, scaled(wanted, presence), settings.limits.force_slew * dt)
 
     def _held(self, port: Port, wanted: Vector3, inputs: Inputs) -> Port:
         """Return the port with the force that the hand is given until the next tick."""
         if inputs.cut:
             return port._replace(force=ZERO3)
-        if not self._passive:
-            return port._replace(force=wanted)
-        return passive(port, wanted, inputs.hand.velocity, inputs.dt, self._damping_limit)
+        return self._passivity.rendered(port, wanted, inputs.hand.velocity, inputs.dt, inputs.delay)
 
     def _faded(self, force: Vector3, dt: float) -> Vector3:
         """Let a force go, at a rate that takes the device's strongest to nothing in `FADE_S`."""

@@ -17,6 +17,7 @@ from groundstation.clock import Clock, Every, Pacer
 from groundstation.devices.keeper import ABSENT, DeviceKeeper, Start, in_thread
 from groundstation.devices.making import flight_device
 from groundstation.messages import COMMAND, Command, CommandKind, Phase, Severity
+from groundstation.pilot.chooser import CHOOSING, at_tick, beginning, obeyed, pressed
 from groundstation.pilot.engagement import (
     Conditions,
     Ending,
@@ -26,11 +27,15 @@ from groundstation.pilot.engagement import (
     disengage,
     engage,
 )
+from groundstation.pilot.guest import load_controller
+from groundstation.pilot.inputs import Inputs
 from groundstation.pilot.lateness import Lateness
-from groundstation.pilot.outbox import Outbox
-from groundstation.pilot.pilot import Inputs, Memory, Outputs, Pilot
+from groundstation.pilot.link_state import link_fault
+from groundstation.pilot.outbox import Outbox, Tick
+from groundstation.pilot.pilot import Memory, Outputs, Pilot
 from groundstation.pilot.realtime import request_realtime
 from groundstation.pilot.sight import ZERO4
+from groundstation.pilot.surroundings import surroundings_of
 from groundstation.pilot.vehicle_feed import VehicleFeed
 from groundstation.run import Run
 
@@ -57,7 +62,7 @@ class Servo:
     """Everything between the device and the bus but the waiting: `tick` is one turn.
 
     Args:
-        run: Settings.
+        run: Settings, mission, and what is known of the vehicle.
         bus: Where records come from and go to.
         device: Not yet open.
         clock: Monotonic seconds.
@@ -76,10 +81,14 @@ class Servo:
         start: Start = in_thread,
     ) -> None:
         self._settings = run.settings
+        self._surroundings = surroundings_of(run)
+        self._controller = load_controller(run.controller, run.settings)
+        self._chosen = beginning(run.settings)
         self._bus = bus
         self._clock = clock
         self._keeper = DeviceKeeper(device, bus.event, clock, start)
-        self._feed = VehicleFeed(bus)
+        self._feed = VehicleFeed(bus, self._surroundings.radius)
+        self._ahead = ZERO4
         self._commands = bus.subscriber(COMMAND)
         self._outbox = Outbox(bus)
         self._setpoint_due = Every(1.0 / run.settings.rates.setpoint)
@@ -101,18 +110,25 @@ class Servo:
         handle = self._keeper.read(now)
         if self._keeper.info is not self._info:
             self._fit(self._keeper.info)
-        self._feed.update()
+        self._feed.update(now, self._ahead)
         hand, conditions = self._look(now, handle)
         before = self._engagement.phase
         cut = self._decide(conditions) or not hand.homed
         phase = self._engagement.phase
         age = conditions.state_age
-        inputs = Inputs(dt, phase, cut, hand, self._feed.sample, age)
+        feed = self._feed
+        self._chosen = pressed(self._chosen, hand.buttons, self._settings.buttons)
+        choices = at_tick(self._chosen, self._settings.buttons)
+        inputs = Inputs(dt, phase, cut, hand, feed.sample, age, feed.delay, feed.loss, choices, feed.seen)
         began = self._clock()
         self._memory, outputs = self._pilot.step(self._memory, inputs)
         self._step_s = max(self._step_s, self._clock() - began)
+        self._ahead = outputs.forecast.p
+        if outputs.fault and phase is Phase.ENGAGED:
+            self._engagement = Engagement()
+            self._end(Ending(outputs.fault))
         self._keeper.write(outputs.force)
-        self._publish(conditions, hand, outputs, changed=phase is not before)
+        self._publish(conditions, inputs, outputs, changed=self._engagement.phase is not before)
 
     def report(self, now: float, late: Lateness, missed: int, *, realtime: bool) -> None:
         """Tell twice a second which device there is, at once when it comes or goes, and how time is kept."""
@@ -141,21 +157,22 @@ class Servo:
         """Fit the controller to a device."""
         self._info = info
         self.rate = info.rate
-        self._pilot = Pilot(self._settings, info)
+        self._pilot = Pilot(self._settings, info, self._surroundings, self._controller)
         self._memory = Memory()
         self._homed = False
         self._tell_gains()
 
     def _tell_gains(self) -> None:
         """Say where the device cannot render the gains that are set."""
-        set_, used, info = self._settings.control, self._pilot.gains, self._info
-        if used != (set_.stiffness, set_.damping):
-            x, y, z = used.stiffness
-            self._bus.event(
-                Severity.INFO,
-                f"{info.name} is passive at {info.rate:.0f} Hz up to control.stiffness = "
-                f"[{x:.3g}, {y:.3g}, {z:.3g}], control.damping = {used.damping:.3g}: these are used.",
-            )
+        set_, info = self._settings.control, self._info
+        for mode, used in self._pilot.gains.items():
+            if (used.stiffness, used.damping) != (set_.stiffness, set_.damping):
+                x, y, z = used.stiffness
+                self._bus.event(
+                    Severity.INFO,
+                    f"In {mode.name.lower()} mode {info.name} is passive at {info.rate:.0f} Hz up to "
+                    f"control.stiffness = [{x:.3g}, {y:.3g}, {z:.3g}], control.damping = {used.damping:.3g}: these are used.",
+                )
 
     def _look(self, now: float, handle: HandleState | None) -> tuple[HandleState, Conditions]:
         """Return the handle, at rest where there is none, and what coupling depends on."""
@@ -178,6 +195,7 @@ class Servo:
             state_age=now - feed.state_t,
             state_valid=feed.valid,
             boots=feed.boots,
+            link_fault=link_fault(feed.delay, feed.loss, self._settings.link),
         )
         self._last_t = now
         return hand, conditions
@@ -199,6 +217,9 @@ class Servo:
         kind = CommandKind(command.kind)
         if kind is CommandKind.ENGAGE:
             self._engage(command, conditions)
+        elif kind in CHOOSING:
+            self._chosen, refusal = obeyed(self._chosen, command)
+            self._outbox.answer(conditions.t, command, refusal)
         elif kind in _RELEASING:
             words = f"the operator commanded {kind.name.capitalize()}"
             self._engagement, ending = disengage(self._engagement, words)
@@ -225,8 +246,9 @@ class Servo:
         self._reason = ending.words
         self._bus.event(ending.severity, f"Disengaged: {ending.words}.")
 
-    def _publish(self, c: Conditions, hand: HandleState, outputs: Outputs, *, changed: bool) -> None:
+    def _publish(self, c: Conditions, inputs: Inputs, outputs: Outputs, *, changed: bool) -> None:
         """Send the handle; at 50 Hz, and at once on a change, the setpoint and the controller's state."""
+        hand = inputs.hand
         self._outbox.handle(c.t, hand, outputs.force, present=self._keeper.present)
         due = self._setpoint_due.due(c.t)
         if not (due or changed):
@@ -235,9 +257,8 @@ class Servo:
         if changed or phase is not Phase.DISENGAGED:
             active = phase is not Phase.DISENGAGED
             self._outbox.setpoint(c.t, outputs.setpoint, hand.device_time, active=active)
-        self._outbox.pilot_state(
-            c.t, outputs, c.state_age, phase, self._reason, centred=c.present and c.centred
-        )
+        tick = Tick(inputs, outputs, self._pilot.stop(outputs))
+        self._outbox.pilot_state(c.t, tick, phase, self._reason, centred=c.present and c.centred)
 
 
 def body(run: Run, bus: Bus, lifeline: Lifeline) -> None:

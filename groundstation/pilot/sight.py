@@ -6,7 +6,7 @@ one disagrees, the difference is not jumped but faded out. At a steady velocity 
 
 from __future__ import annotations
 
-from math import exp
+from math import exp, inf
 from typing import NamedTuple
 
 from groundstation.frames import Vector4
@@ -40,7 +40,7 @@ def look(sight: Sight, sample: VehicleSample, age: float, dt: float) -> tuple[Si
     Args:
         sight: Of the tick before; `Sight()` at the start.
         sample: The newest; another object than the last one only if it is another sample.
-        age: Of it, s.
+        age: Of it, s; infinite while none has come.
         dt: Since the tick before, s.
 
     Returns:
@@ -48,7 +48,8 @@ def look(sight: Sight, sample: VehicleSample, age: float, dt: float) -> tuple[Si
     """
     here = carried_on(sample, age)
     x, y, z, yaw = sight.offset
-    if sample is not sight.sample and sight.sample is not None:
+    # Until the first sample comes there is one without age, of nothing: with that nothing can disagree.
+    if sample is not sight.sample and sight.sample is not None and sight.age < inf:
         ex, ey, ez, e_yaw = carried_on(sight.sample, sight.age + dt)
         x, y, z, yaw = position_error((ex + x, ey + y, ez + z, e_yaw + yaw), here)
     left = exp(-dt / FADE_S)

@@ -14,7 +14,7 @@ import rerun as rr
 
 import groundstation
 from groundstation.messages import DeviceReport
-from groundstation.recording import schema
+from groundstation.recording import entities, schema
 from groundstation.recording.batch import text
 from groundstation.recording.item import Still
 from groundstation.run import Run
@@ -89,7 +89,7 @@ def _page(run: Run, device: DeviceReport | None) -> Still:
     for name, settings in msgspec.to_builtins(run.settings).items():
         lines += ["", f"## {name.capitalize()}", *_table("setting", settings)]
     page = rr.TextDocument("\n".join(lines), media_type=rr.MediaType.MARKDOWN)
-    return Still(schema.ABOUT, page)
+    return Still(entities.ABOUT, page)
 
 
 def _table(title: str, facts: Mapping[str, object]) -> list[str]:

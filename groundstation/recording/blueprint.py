@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+import rerun as rr
 import rerun.blueprint as rrb
 from rerun.blueprint.api import VisualizerLike
 from rerun.blueprint.encodings import TextLogColumn
 from rerun.encodings import EntityPathLike
 
-from groundstation.recording import palette, schema
+from groundstation.recording import entities, lanes, palette, schema
 from groundstation.recording.scene import extent
 from groundstation.training.mission import Mission
 
@@ -18,13 +19,16 @@ _WHOLE_WAY = rrb.VisibleTimeRanges(
     start=rrb.TimeRangeBoundary.infinite(),
     end=rrb.TimeRangeBoundary.cursor_relative(),
 )
-_TRAILS: dict[EntityPathLike, VisualizerLike | Iterable[VisualizerLike]] = {
-    schema.VEHICLE_TRAIL: _WHOLE_WAY,
-    schema.HAND_TRAIL: _WHOLE_WAY,
+Overrides = dict[EntityPathLike, VisualizerLike | Iterable[VisualizerLike]]
+_TRAILS: Overrides = {
+    entities.VEHICLE_TRAIL: _WHOLE_WAY,
+    entities.HAND_TRAIL: _WHOLE_WAY,
 }
 _AXIS = rrb.TimeAxis(link=rrb.components.LinkAxis.LinkToGlobal)
 # The velocities share their colours: one legend is enough.
 _FIRST = "Forward velocity"
+_DELAY_TERMS = (schema.RECKONED.path, schema.PHASE_MARGIN.path, schema.SHARES.path)
+_FEEL_LANES = (lanes.MAPPING, lanes.PRESET, lanes.GUARD, lanes.COMPENSATION)
 _BACKGROUND: palette.Colour = (20, 23, 28)
 _GRID = (120, 128, 140, 90)
 
@@ -38,15 +42,15 @@ def blueprint(mission: Mission | None) -> rrb.Blueprint:
     left = rrb.Vertical(
         rrb.Tabs(_scene(mission), _chase(), active_tab=0),
         rrb.Tabs(
-            _events(), rrb.TextDocumentView(origin=schema.ABOUT, name="About this flight"), active_tab=0
+            _events(), rrb.TextDocumentView(origin=entities.ABOUT, name="About this flight"), active_tab=0
         ),
         row_shares=[5, 2],
     )
-    right = rrb.Tabs(_flight(), _hand(), _machinery(), active_tab=0)
+    right = rrb.Tabs(_flight(), _hand(), _feel(), _machinery(), active_tab=0)
     return rrb.Blueprint(
         rrb.Vertical(
             rrb.Horizontal(left, right, column_shares=[5, 6]),
-            _states("Mode, hand, mission, vehicle", schema.MODE, schema.PHASE, schema.STAGE, schema.VEHICLE),
+            _states("Mode, hand, mission, vehicle", lanes.MODE, lanes.PHASE, lanes.STAGE, lanes.VEHICLE),
             row_shares=[10, 3],
         ),
         rrb.BlueprintPanel(state="collapsed"),
@@ -65,7 +69,7 @@ def _scene(mission: Mission | None) -> rrb.Spatial3DView:
         look_target=tuple(middle),
         eye_up=(0, 0, 1),
     )
-    return _space(f"Scene (force arrow: {schema.ARROW_M_PER_N} m a newton)", eye)
+    return _space(f"Scene (force arrow: {entities.ARROW_M_PER_N} m a newton)", eye)
 
 
 def _chase() -> rrb.Spatial3DView:
@@ -74,14 +78,14 @@ def _chase() -> rrb.Spatial3DView:
         position=(-6.0, -2.5, 3.2),
         look_target=(0, 0, 0),
         eye_up=(0, 0, 1),
-        tracking_entity=schema.CHASED,
+        tracking_entity=entities.CHASED,
     )
     return _space("Chase", eye)
 
 
 def _space(name: str, eye: rrb.EyeControls3D) -> rrb.Spatial3DView:
     return rrb.Spatial3DView(
-        origin=schema.WORLD,
+        origin=entities.WORLD,
         name=name,
         overrides=_TRAILS,
         background=rrb.Background(color=_BACKGROUND),
@@ -96,20 +100,23 @@ def _events() -> rrb.TextLogView:
         TextLogColumn("body"),
     ]
     return rrb.TextLogView(
-        origin=schema.EVENTS, name="Events", columns=rrb.TextLogColumns(text_log_columns=columns)
+        origin=entities.EVENTS, name="Events", columns=rrb.TextLogColumns(text_log_columns=columns)
     )
 
 
-def _states(name: str, *lanes: schema.Lane) -> rrb.StateTimelineView:
-    return rrb.StateTimelineView(contents=[lane.path for lane in lanes], name=name, time_view=_AXIS)
+def _states(name: str, *shown: lanes.Lane) -> rrb.StateTimelineView:
+    return rrb.StateTimelineView(contents=[lane.path for lane in shown], name=name, time_view=_AXIS)
 
 
-def _plot(name: str, *paths: str, legend: bool = True) -> rrb.TimeSeriesView:
+def _plot(
+    name: str, *paths: str, legend: bool = True, overrides: Overrides | None = None
+) -> rrb.TimeSeriesView:
     return rrb.TimeSeriesView(
         contents=list(paths),
         name=name,
         axis_x=_AXIS,
         plot_legend=rrb.PlotLegend(rrb.Corner2D.LeftTop, visible=legend),
+        overrides=overrides,
     )
 
 
@@ -148,6 +155,36 @@ def _hand() -> rrb.Grid:
     )
 
 
+def _feel() -> rrb.Vertical:
+    plots = rrb.Grid(
+        _plot("Force by cue, N", schema.CUE_SIZES.path),
+        _plot("Force on the hand, N", schema.HANDLE_FORCE.path),
+        _guarded("Forward velocity asked for, guarded, flown, m/s", 0),
+        _guarded("Left velocity asked for, guarded, flown, m/s", 1),
+        _plot("K₁ in effect, 1/s", schema.K1.path),
+        _plot("Delay, s; margin, rad; shares of gains and speed", *_DELAY_TERMS),
+        _plot("Energy of the hand's port, J", schema.HANDLE_ENERGY.path),
+        _plot("Seen by the vehicle's sensors, m", schema.RANGES.path),
+        grid_columns=2,
+    )
+    states = _states("Handle, preset, guard, compensation", *_FEEL_LANES)
+    return rrb.Vertical(plots, states, row_shares=[4, 1], name="Feel")
+
+
+def _guarded(name: str, axis: int) -> rrb.TimeSeriesView:
+    """Show one axis of v_ref and v_safe, which is the guard's doing, and what the vehicle makes of it."""
+    visible = [place == axis for place in range(4)]
+    overrides: Overrides = {
+        quantity.path: rr.SeriesLines(names=[word] * 4, colors=[colour] * 4, visible_series=visible)
+        for quantity, word, colour in (
+            (schema.V_REF, "v_ref", palette.REFERENCE),
+            (schema.V_SAFE, "v_safe", palette.VERMILION),
+        )
+    }
+    paths = (schema.V_REF.path, schema.V_SAFE.path, schema.EXECUTED[axis].path)
+    return _plot(name, *paths, overrides=overrides)
+
+
 def _machinery() -> rrb.Vertical:
     plots = rrb.Grid(
         _plot("Servo's lateness, s", schema.SERVO_LATE.path),
@@ -158,5 +195,5 @@ def _machinery() -> rrb.Vertical:
         _plot("Time between heartbeats, s", f"{schema.PROCESSES}/**"),
         grid_columns=2,
     )
-    states = _states("Device and setpoint stream", schema.DEVICE_STATE, schema.STREAM)
+    states = _states("Device and setpoint stream", lanes.DEVICE_STATE, lanes.STREAM)
     return rrb.Vertical(plots, states, row_shares=[4, 1], name="Machinery")

@@ -19,13 +19,15 @@ from groundstation.messages import (
     CommandKind,
     DeviceReport,
     FlightMode,
+    MappingMode,
     Phase,
     PilotState,
+    Preset,
     Severity,
     Stream,
     VehicleStatus,
 )
-from groundstation.recording import schema
+from groundstation.recording import entities, lanes
 from groundstation.recording.batch import Batch, text
 from groundstation.recording.item import Chunk, time_column
 
@@ -51,38 +53,45 @@ class Changes:
         """Yield a batch's changes of state, an entity each."""
         pilot = batch.of(PILOT_STATE)
         status = batch.of(VEHICLE_STATUS)
-        states: tuple[tuple[schema.Lane, Iterable[Timed]], ...] = (
-            (schema.PHASE, ((state.t, _phase(state)) for state in pilot)),
-            (schema.MODE, ((state.t, _word(FlightMode, state.mode)) for state in status)),
-            (schema.STREAM, ((state.t, _word(Stream, state.streaming)) for state in status)),
-            (schema.VEHICLE, ((state.t, _vehicle(state)) for state in status)),
-            (schema.DEVICE_STATE, ((report.t, _device(report)) for report in batch.of(DEVICE_REPORT))),
-            (schema.STAGE, ((state.t, text(state.stage)) for state in batch.of(MISSION_PROGRESS))),
+        states: tuple[tuple[lanes.Lane, Iterable[Timed]], ...] = (
+            (lanes.PHASE, ((state.t, _phase(state)) for state in pilot)),
+            (lanes.MODE, ((state.t, _word(FlightMode, state.mode)) for state in status)),
+            (lanes.STREAM, ((state.t, _word(Stream, state.streaming)) for state in status)),
+            (lanes.VEHICLE, ((state.t, _vehicle(state)) for state in status)),
+            (lanes.DEVICE_STATE, ((report.t, _device(report)) for report in batch.of(DEVICE_REPORT))),
+            (lanes.STAGE, ((state.t, text(state.stage)) for state in batch.of(MISSION_PROGRESS))),
+            (lanes.MAPPING, ((state.t, _mapping(state)) for state in pilot)),
+            (lanes.PRESET, ((state.t, _word(Preset, state.preset)) for state in pilot)),
+            (lanes.GUARD, ((state.t, "guards" if state.guarding else "lets pass") for state in pilot)),
+            (lanes.COMPENSATION, ((state.t, "on" if state.compensated else "off") for state in pilot)),
         )
         for lane, timed in states:
             if changed := self._changed(lane.path, timed):
                 words = [word for _, word in changed]
                 yield Chunk(lane.path, self._times(changed), rr.StateChange.columns(state=words))
-        reasons = self._changed(schema.REASON, ((state.t, text(state.reason)) for state in pilot))
-        if spoken := [(t, reason, _INFO) for t, reason in reasons if reason]:
-            yield self._texts(schema.REASON, spoken)
+        for path, said in (
+            (entities.REASON, ((state.t, text(state.reason)) for state in pilot)),
+            (entities.GUARDED, ((state.t, _guarded(state)) for state in pilot)),
+        ):
+            if lines := [(t, words, _INFO) for t, words in self._changed(path, said) if words]:
+                yield self._texts(path, lines)
 
     def texts(self, batch: Batch) -> Iterator[Chunk]:
         """Yield a batch's events, an entity a source, and its commands with their answers."""
         events: dict[str, list[tuple[float, str, str]]] = {}
         for event in batch.of(EVENT):
             level = _LEVELS.get(event.severity, _WARNING)
-            path = f"{schema.EVENTS}/{text(event.source)}"
+            path = f"{entities.EVENTS}/{text(event.source)}"
             events.setdefault(path, []).append((event.t, text(event.text), level))
         for command in batch.of(COMMAND):
             line = f"{_word(CommandKind, command.kind).capitalize()} asked for ({text(command.source)})"
-            events.setdefault(schema.COMMANDS, []).append((command.t, line, _INFO))
+            events.setdefault(entities.COMMANDS, []).append((command.t, line, _INFO))
         for answer in batch.of(COMMAND_ANSWER):
             name = _word(CommandKind, answer.kind).capitalize()
             words = text(answer.text)
             line = f"{name} {'done' if answer.ok else 'refused'}{': ' if words else ''}{words}"
             level = _INFO if answer.ok else _WARNING
-            events.setdefault(schema.COMMANDS, []).append((answer.t, line, level))
+            events.setdefault(entities.COMMANDS, []).append((answer.t, line, level))
         for path, lines in events.items():
             yield self._texts(path, sorted(lines))
 
@@ -116,6 +125,18 @@ def _phase(state: PilotState) -> str:
     if state.phase == Phase.ENGAGED and state.on_leash:
         return "on leash"
     return _word(Phase, state.phase)
+
+
+def _mapping(state: PilotState) -> str:
+    if state.clutched:
+        return "clutched"
+    if state.waiting:
+        return "waiting for the centre"
+    return f"{_word(MappingMode, state.mapping)}{', fine' if state.fine else ''}"
+
+
+def _guarded(state: PilotState) -> str:
+    return f"keeps away from {text(state.guarded_by)}" if state.guarding else ""
 
 
 def _vehicle(status: VehicleStatus) -> str:

@@ -13,6 +13,7 @@ from groundstation.messages import (
     HANDLE,
     HEARTBEAT,
     MISSION_PROGRESS,
+    OBSTACLES,
     PILOT_STATE,
     SERVO_REPORT,
     SETPOINT,
@@ -80,6 +81,16 @@ def _executed(axis: int) -> Callable[[Rows], Numbers]:
     )
 
 
+def _sizes(*vectors: str) -> Callable[[Rows], Numbers]:
+    return lambda rows: np.column_stack([np.linalg.norm(rows[vector], axis=1) for vector in vectors])
+
+
+def _ranges(rows: Rows) -> Numbers:
+    """Return the ring's least, NaN where nothing of it is known; below, above, and the ring's limit."""
+    least = np.fmin.reduce(rows["ring"], axis=1)
+    return np.column_stack((least, rows["below"], rows["above"], rows["limit"]))
+
+
 _NUMBERS: tuple[tuple[Topic[Any], tuple[tuple[Quantity, Callable[[Rows], Numbers]], ...]], ...] = (
     (
         HANDLE,
@@ -103,8 +114,24 @@ _NUMBERS: tuple[tuple[Topic[Any], tuple[tuple[Quantity, Callable[[Rows], Numbers
             (schema.P_H_RATE, _fields("p_h_rate")),
             (schema.ERROR, _fields("error")),
             (schema.V_REF, _fields("v_ref")),
+            (schema.V_SAFE, _fields("v_safe")),
+            (schema.V_C, _fields("v_c")),
+            (schema.K1, _fields("k1")),
+            (schema.PHASE_MARGIN, _fields("phase_margin")),
+            (schema.SHARES, _fields("gain_share", "speed_share")),
             (schema.FORCE_CUE, _fields("force")),
+            (schema.ENVIRONMENT_CUE, _fields("environment")),
+            (schema.MISMATCH_CUE, _fields("mismatch")),
+            (schema.GUARD_CUE, _fields("guard")),
+            (schema.DAMPING_CUE, _fields("damping")),
+            (schema.CUE_SIZES, _sizes("force", "environment", "mismatch", "guard", "damping")),
+            (schema.CUES_ON, _fields("cues")),
+            (schema.PREDICTED, _fields("predicted")),
+            (schema.PREDICTED_VELOCITY, _fields("predicted_velocity")),
+            (schema.STOP, _fields("stop")),
+            (schema.PUSH, _fields("push")),
             (schema.STATE_AGE, _fields("state_age")),
+            (schema.RECKONED, _fields("delay")),
             (schema.HANDLE_ENERGY, _fields("port_energy", "dissipated")),
         ),
     ),
@@ -116,6 +143,13 @@ _NUMBERS: tuple[tuple[Topic[Any], tuple[tuple[Quantity, Callable[[Rows], Numbers
             (schema.VELOCITY, _valid("velocity")),
             (schema.ATTITUDE, _fields("roll", "pitch")),
             (schema.BOOT_TIME, _fields("boot_t")),
+        ),
+    ),
+    (
+        OBSTACLES,
+        (
+            (schema.RING, _fields("ring")),
+            (schema.RANGES, _ranges),
         ),
     ),
     (
@@ -165,11 +199,17 @@ def number_chunks(batch: Batch, start: float) -> Iterator[Chunk]:
         rows = rows_of(records)
         times = time_column(rows["t"] - start)
         for quantity, values in quantities:
-            yield Chunk(quantity.path, times, rr.Scalars.columns(scalars=_finite_or_nan(values(rows))))
+            numbers = values(rows)
+            if quantity is not schema.RING:
+                numbers = _finite_or_nan(numbers)
+            yield Chunk(quantity.path, times, rr.Scalars.columns(scalars=numbers))
 
 
 def _finite_or_nan(values: Numbers) -> Numbers:
-    """Plots scale to what they are given: an infinite clearance, as in free flight, is no number to show."""
+    """Plots scale to what they are given: an infinite clearance, as in free flight, is no number to show.
+
+    In the ring, which no plot shows, it says that nothing is there.
+    """
     return np.where(np.isfinite(values), values, np.nan)
 
 

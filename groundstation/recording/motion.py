@@ -1,4 +1,4 @@
-"""What moves in the scene: the vehicle, the hand's p_h, the leash between them, and the force on the hand."""
+"""What moves in the scene: the vehicle and where it will be, the hand's p_h, the leash between, and the force."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy.typing as npt
 import rerun as rr
 
 from groundstation.messages import HANDLE, PILOT_STATE, VEHICLE_STATE, Phase
-from groundstation.recording import schema
+from groundstation.recording import entities
 from groundstation.recording.batch import Batch
 from groundstation.recording.columns import Rows, rows_of
 from groundstation.recording.item import Chunk, Numbers, time_column
@@ -66,8 +66,8 @@ class Motion:
     def __init__(self, start: float, *, heading: bool) -> None:
         self._start = start
         self._heading = heading
-        self._vehicle_trail = Trail(schema.VEHICLE_TRAIL)
-        self._hand_trail = Trail(schema.HAND_TRAIL)
+        self._vehicle_trail = Trail(entities.VEHICLE_TRAIL)
+        self._hand_trail = Trail(entities.HAND_TRAIL)
         self._force = np.zeros((1, 3))
         self._force_t = np.zeros(1)
 
@@ -87,26 +87,31 @@ class Motion:
         pose = rr.Transform3D.columns(
             translation=position[:, :3], quaternion=quaternions(rows["roll"], rows["pitch"], position[:, 3])
         )
-        yield Chunk(schema.VEHICLE_POSE, time_column(times), pose)
+        yield Chunk(entities.VEHICLE_POSE, time_column(times), pose)
         ground = position[:, :3] * (1.0, 1.0, 0.0)
         plumbs = list(np.stack((position[:, :3], ground), axis=1))
-        yield Chunk(schema.PLUMB, time_column(times), rr.LineStrips3D.columns(strips=plumbs))
+        yield Chunk(entities.PLUMB, time_column(times), rr.LineStrips3D.columns(strips=plumbs))
         yield from self._vehicle_trail.add(times, position[:, :3])
 
     def _hand(self, rows: Rows) -> Iterator[Chunk]:
-        """Yield p_h, leash and force; in rows that are not engaged they are empty, which clears them."""
+        """Yield what holds while engaged; in rows that are not engaged it is empty, which clears it."""
         engaged = rows["phase"] == Phase.ENGAGED
         times = rows["t"] - self._start
         column = time_column(times)
         lengths = engaged.astype(np.int32)
         shown = rows[engaged]
         hand, seen = shown["p_h"][:, :3], (shown["p_h"] - shown["error"])[:, :3]
-        force = self._world_force(shown) * schema.ARROW_M_PER_N
+        force = self._world_force(shown) * entities.ARROW_M_PER_N
         leashes = list(np.stack((seen, hand), axis=1))
-        yield Chunk(schema.HAND, column, rr.Points3D.columns(positions=hand).partition(lengths))
-        yield Chunk(schema.LEASH, column, rr.LineStrips3D.columns(strips=leashes).partition(lengths))
+        yield Chunk(entities.HAND, column, rr.Points3D.columns(positions=hand).partition(lengths))
+        yield Chunk(entities.LEASH, column, rr.LineStrips3D.columns(strips=leashes).partition(lengths))
         arrows = rr.Arrows3D.columns(origins=seen, vectors=force).partition(lengths)
-        yield Chunk(schema.FORCE_ARROW, column, arrows)
+        yield Chunk(entities.FORCE_ARROW, column, arrows)
+        predicted, stop = shown["predicted"][:, :3], shown["stop"]
+        prospects = list(np.stack((seen, predicted, stop), axis=1))
+        for path, points in ((entities.PREDICTED, predicted), (entities.STOP, stop)):
+            yield Chunk(path, column, rr.Points3D.columns(positions=points).partition(lengths))
+        yield Chunk(entities.PROSPECT, column, rr.LineStrips3D.columns(strips=prospects).partition(lengths))
         if not engaged.all():
             self._hand_trail.lift()
         if len(shown):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from groundstation.recording.schema import Tone
+from groundstation.recording.lanes import Tone
 
 Colour = tuple[int, int, int]
 

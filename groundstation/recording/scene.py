@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 import rerun as rr
 
-from groundstation.recording import palette, schema
+from groundstation.recording import entities, palette
 from groundstation.recording.airframe import quadrotor
 from groundstation.recording.item import Numbers, Still
 from groundstation.training.mission import Mission
@@ -30,24 +30,24 @@ def static_scene(mission: Mission | None) -> Iterator[Still]:
     Args:
         mission: Whose obstacles, route and target are shown; None shows the ground alone.
     """
-    yield Still(schema.WORLD, rr.ViewCoordinates.RIGHT_HAND_Z_UP)
-    yield Still(schema.GROUND, _ground(mission))
+    yield Still(entities.WORLD, rr.ViewCoordinates.RIGHT_HAND_Z_UP)
+    yield Still(entities.GROUND, _ground(mission))
     yield Still(
-        schema.PAD, rr.Cylinders3D(lengths=[0.02], radii=[0.5], colors=[palette.BLUE], fill_mode=_SOLID)
+        entities.PAD, rr.Cylinders3D(lengths=[0.02], radii=[0.5], colors=[palette.BLUE], fill_mode=_SOLID)
     )
     for obstacle in mission.obstacle if mission else ():
         parts = primitives(obstacle)
         for number, part in enumerate(parts):
-            path = f"{schema.OBSTACLES}/{_entity(obstacle.name)}"
+            path = f"{entities.OBSTACLES}/{_entity(obstacle.name)}"
             yield Still(path if len(parts) == 1 else f"{path}/{number}", _solid(part))
     for pad in mission.pad if mission else ():
-        yield Still(f"{schema.PAD}/{_entity(pad.name)}", _pad(pad))
+        yield Still(f"{entities.PAD}/{_entity(pad.name)}", _pad(pad))
     if mission and mission.route:
-        yield Still(schema.ROUTE, _route(mission))
+        yield Still(entities.ROUTE, _route(mission))
     if mission and mission.target:
         position, radius = mission.target.position, mission.target.radius
         yield Still(
-            schema.TARGET,
+            entities.TARGET,
             rr.Ellipsoids3D(
                 centers=[position],
                 radii=[radius],
@@ -57,9 +57,9 @@ def static_scene(mission: Mission | None) -> Iterator[Still]:
                 labels=["target"],
             ),
         )
-    yield Still(schema.AIRFRAME, quadrotor())
+    yield Still(entities.AIRFRAME, quadrotor())
     yield Still(
-        schema.CHASED,
+        entities.CHASED,
         rr.Points3D([(-_CHASE_M, -_CHASE_M, -_CHASE_M), (_CHASE_M, _CHASE_M, _CHASE_M)], radii=[0.0]),
     )
     yield from _looks()
@@ -67,12 +67,16 @@ def static_scene(mission: Mission | None) -> Iterator[Still]:
 
 def _looks() -> Iterator[Still]:
     """Yield colour and thickness of what moves; negative radii are in the screen's points, not metres."""
-    yield Still(schema.VEHICLE_TRAIL, rr.LineStrips3D.from_fields(colors=[palette.VEHICLE], radii=[-1.5]))
-    yield Still(schema.HAND_TRAIL, rr.LineStrips3D.from_fields(colors=[palette.HAND], radii=[-0.75]))
-    yield Still(schema.PLUMB, rr.LineStrips3D.from_fields(colors=[palette.LIGHT], radii=[-0.5]))
-    yield Still(schema.HAND, rr.Points3D.from_fields(colors=[palette.HAND], radii=[0.07]))
-    yield Still(schema.LEASH, rr.LineStrips3D.from_fields(colors=[palette.HAND], radii=[-1.0]))
-    yield Still(schema.FORCE_ARROW, rr.Arrows3D.from_fields(colors=[palette.FORCE], radii=[0.04]))
+    yield Still(entities.VEHICLE_TRAIL, rr.LineStrips3D.from_fields(colors=[palette.VEHICLE], radii=[-1.5]))
+    yield Still(entities.HAND_TRAIL, rr.LineStrips3D.from_fields(colors=[palette.HAND], radii=[-0.75]))
+    yield Still(entities.PLUMB, rr.LineStrips3D.from_fields(colors=[palette.LIGHT], radii=[-0.5]))
+    yield Still(entities.HAND, rr.Points3D.from_fields(colors=[palette.HAND], radii=[0.07]))
+    yield Still(entities.LEASH, rr.LineStrips3D.from_fields(colors=[palette.HAND], radii=[-1.0]))
+    yield Still(entities.PREDICTED, rr.Points3D.from_fields(colors=[palette.VEHICLE], radii=[0.06]))
+    yield Still(entities.STOP, rr.Points3D.from_fields(colors=[palette.VERMILION], radii=[0.05]))
+    yield Still(entities.PROSPECT, rr.LineStrips3D.from_fields(colors=[palette.VEHICLE], radii=[-0.75]))
+    yield Still(entities.ECHOES, rr.Points3D.from_fields(colors=[palette.PURPLE], radii=[-2.0]))
+    yield Still(entities.FORCE_ARROW, rr.Arrows3D.from_fields(colors=[palette.FORCE], radii=[0.04]))
 
 
 def extent(mission: Mission | None) -> tuple[Numbers, Numbers]:

@@ -9,16 +9,17 @@ handle x toward the drone's front, y left, z up; angles in rad, counter-clockwis
 from __future__ import annotations
 
 from dataclasses import dataclass
-from enum import Enum
 
-from groundstation.training.director import Stage
+from groundstation.messages import RING_SECTORS
+from groundstation.recording.entities import SCENE
+from groundstation.recording.lanes import LANES
 
 APPLICATION = "groundstation"
-VERSION = 1
+# 2: what stands around equations (4) and (5), and the vehicle's own distance sensors. A reader of 2 reads 1.
+VERSION = 2
 TIMELINE = "flight_time"
 
-# Static text and properties of the whole flight.
-ABOUT = "/about"
+# Properties of the whole flight.
 FLIGHT = "flight"
 DEVICE = "device"
 
@@ -68,9 +69,59 @@ P_H = Quantity("/pilot/p_h", _POSE, "m, rad", "50 Hz", "p_h: where the hand want
 P_H_RATE = Quantity("/pilot/p_h_rate", _POSE, "m/s, rad/s", "50 Hz", "ṗ_h: how fast the hand moves it, world")
 ERROR = Quantity("/pilot/error", _POSE, "m, rad", "50 Hz", "p̃ = p_h(t) − p(t − d₁), world")
 V_REF = Quantity(
-    "/pilot/v_ref", _BODY, "m/s, rad/s", "50 Hz", "v_ref of equation (4), vehicle's axes, before the limits"
+    "/pilot/v_ref", _BODY, "m/s, rad/s", "50 Hz", "What the controller asks for, equation (4); vehicle's axes"
 )
+V_SAFE = Quantity("/pilot/v_safe", _BODY, "m/s, rad/s", "50 Hz", "v_ref as the guard leaves it")
+V_C = Quantity(
+    "/pilot/v_c", _BODY, "m/s, rad/s", "50 Hz", "v_safe within the limits: what the vehicle is meant to fly"
+)
+K1 = Quantity("/pilot/k1", _POSE, "1/s", "50 Hz", "Diagonal of K₁ in effect; NaN while nothing is flown")
+PHASE_MARGIN = Quantity(
+    "/pilot/phase_margin", ("margin",), "rad", "50 Hz", "Phase margin of the position loop"
+)
+SHARES = Quantity(
+    "/pilot/shares", ("gains", "speed"), "share", "50 Hz", "What the link's state leaves of them, 0 to 1"
+)
+PREDICTED = Quantity(
+    "/pilot/predicted",
+    _POSE,
+    "m, rad",
+    "50 Hz",
+    "Where the vehicle will be when what is sent now reaches it, world",
+)
+PREDICTED_VELOCITY = Quantity("/pilot/predicted_velocity", _AXES, "m/s", "50 Hz", "Its velocity then, world")
+STOP = Quantity(
+    "/pilot/stop", _AXES, "m", "50 Hz", "Where it would come to rest from there with a centred handle, world"
+)
+PUSH = Quantity(
+    "/pilot/push",
+    _AXES,
+    "m/s²",
+    "50 Hz",
+    "Acceleration by wind and all else that the model does not know, world",
+)
+
 FORCE_CUE = Quantity("/pilot/force", _AXES, "N", "50 Hz", "Force of equation (5), f = −K p̃, world")
+ENVIRONMENT_CUE = Quantity("/pilot/cue/environment", _AXES, "N", "50 Hz", "Away from what is near, world")
+MISMATCH_CUE = Quantity(
+    "/pilot/cue/mismatch", _AXES, "N", "50 Hz", "By the velocity that is asked for and not flown, world"
+)
+GUARD_CUE = Quantity(
+    "/pilot/cue/guard", _AXES, "N", "50 Hz", "Against what the guard does not let pass, world"
+)
+DAMPING_CUE = Quantity(
+    "/pilot/cue/damping", _AXES, "N", "50 Hz", "Against the handle's velocity, handle frame"
+)
+CUE_SIZES = Quantity(
+    "/pilot/cue/sizes",
+    ("position", "environment", "mismatch", "guard", "damping"),
+    "N",
+    "50 Hz",
+    "Norms of equation (5)'s force and of the other cues",
+)
+CUES_ON = Quantity(
+    "/pilot/cue/on", ("cues",), "bits", "50 Hz", "Flags of `groundstation.messages.Cue` that are on"
+)
 
 REFERENCES = tuple(
     Quantity(
@@ -104,10 +155,28 @@ BOOT_TIME = Quantity(
 BATTERY = Quantity("/vehicle/battery", ("charge",), "share", "10 Hz", "Battery left, 0 to 1")
 VOLTAGE = Quantity("/vehicle/voltage", ("voltage",), "V", "10 Hz", "Battery's voltage")
 
+RING = Quantity(
+    "/ranges/ring",
+    tuple(f"{place * 360 // RING_SECTORS}°" for place in range(RING_SECTORS)),
+    "m",
+    "10 Hz",
+    "Distance that the vehicle's sensors see, counter-clockwise from forward; infinite: nothing is there",
+)
+RANGES = Quantity(
+    "/ranges/nearest",
+    ("around", "below", "above", "limit"),
+    "m",
+    "10 Hz",
+    "Least of the ring; straight down and up; how far the ring sees",
+)
+
 STATE_AGE = Quantity(
     "/delay/state_age", ("vehicle's state",), "s", "50 Hz", "Age of the state the pilot used, d₁"
 )
 ROUND_TRIP = Quantity("/delay/round_trip", ("round trip",), "s", "10 Hz", "There and back by TIMESYNC")
+RECKONED = Quantity(
+    "/delay/reckoned", ("reckoned",), "s", "50 Hz", "Round trip that the controller reckons with"
+)
 SILENCE = Quantity("/delay/silence", ("silence",), "s", "10 Hz", "Since the vehicle's last frame")
 HANDLE_AGE = Quantity("/delay/handle_age", ("handle",), "s", "50 Hz", "From handle sample to active setpoint")
 
@@ -139,16 +208,21 @@ COLLISIONS = Quantity("/mission/collisions", ("collisions",), "contacts", "missi
 
 QUANTITIES: tuple[Quantity, ...] = (
     HANDLE_POSITION, HANDLE_VELOCITY, HANDLE_FORCE, HANDLE_ENERGY, HANDLE_BUTTONS,
-    P_H, P_H_RATE, ERROR, V_REF, FORCE_CUE,
+    P_H, P_H_RATE, ERROR, V_REF, V_SAFE, V_C, K1, PHASE_MARGIN, SHARES,
+    FORCE_CUE, ENVIRONMENT_CUE, MISMATCH_CUE, GUARD_CUE, DAMPING_CUE, CUE_SIZES, CUES_ON,
+    PREDICTED, PREDICTED_VELOCITY, STOP, PUSH,
     *REFERENCES, *EXECUTED,
     POSITION, VELOCITY, ATTITUDE, BOOT_TIME, BATTERY, VOLTAGE, HEALTH_BITS,
-    STATE_AGE, HANDLE_AGE, ROUND_TRIP, SILENCE,
+    RING, RANGES,
+    STATE_AGE, HANDLE_AGE, ROUND_TRIP, RECKONED, SILENCE,
     LOSS, GATE,
     SERVO_RATE, SERVO_LATE, SERVO_TIME, SERVO_TICKS,
     TARGET_DISTANCE, CLEARANCE, LEGS, COLLISIONS,
 )  # fmt: skip
 
 PROCESSES = "/processes"
+# Of so many parts only the first and the last are named.
+_MANY = 10
 
 
 def heartbeat(role: str) -> Quantity:
@@ -156,143 +230,11 @@ def heartbeat(role: str) -> Quantity:
     return Quantity(f"{PROCESSES}/{role}", (role,), "s", "10 Hz", "Time since the process's heartbeat before")
 
 
-class Tone(Enum):
-    """What a state means for the operator; the viewer's colour of it."""
-
-    IDLE = "idle"
-    WORKING = "working"
-    GOOD = "good"
-    WARNING = "warning"
-    FAULT = "fault"
-
-
-@dataclass(frozen=True, slots=True)
-class Lane:
-    """Something with states that exclude each other, logged when it changes.
-
-    Attributes:
-        path: Entity.
-        meaning: What it is.
-        states: The words it can take, with their meaning for the operator.
-    """
-
-    path: str
-    meaning: str
-    states: tuple[tuple[str, Tone], ...]
-
-
-MODE = Lane(
-    "/state/mode",
-    "Who steers the vehicle, as its heartbeat says",
-    (
-        ("unknown", Tone.IDLE),
-        ("ready", Tone.IDLE),
-        ("takeoff", Tone.WORKING),
-        ("hold", Tone.WORKING),
-        ("offboard", Tone.GOOD),
-        ("return", Tone.WARNING),
-        ("land", Tone.WORKING),
-        ("mission", Tone.WARNING),
-        ("position", Tone.WARNING),
-        ("altitude", Tone.WARNING),
-        ("manual", Tone.WARNING),
-        ("other", Tone.WARNING),
-    ),
-)
-PHASE = Lane(
-    "/state/phase",
-    "How far the hand is coupled to the vehicle",
-    (
-        ("disengaged", Tone.IDLE),
-        ("engaging", Tone.WORKING),
-        ("engaged", Tone.GOOD),
-        ("on leash", Tone.WARNING),
-    ),
-)
-STREAM = Lane(
-    "/state/stream",
-    "The setpoints' stream to the vehicle",
-    (("idle", Tone.IDLE), ("starting", Tone.WORKING), ("flying", Tone.GOOD), ("ended", Tone.WARNING)),
-)
-VEHICLE = Lane(
-    "/state/vehicle",
-    "Vehicle's motors and link",
-    (
-        ("no link", Tone.FAULT),
-        ("disarmed", Tone.IDLE),
-        ("armed", Tone.WORKING),
-        ("in air", Tone.GOOD),
-    ),
-)
-DEVICE_STATE = Lane(
-    "/state/device",
-    "The haptic device",
-    (("absent", Tone.FAULT), ("not homed", Tone.WARNING), ("ready", Tone.GOOD)),
-)
-STAGE = Lane(
-    "/state/stage",
-    "The mission's stage",
-    (
-        (Stage.WAITING.value, Tone.IDLE),
-        (Stage.TAKING_OFF.value, Tone.WORKING),
-        (Stage.ROUTE.value, Tone.WORKING),
-        (Stage.HOLDING.value, Tone.GOOD),
-        (Stage.RETURNING.value, Tone.GOOD),
-        (Stage.DONE.value, Tone.IDLE),
-    ),
-)
-LANES: tuple[Lane, ...] = (PHASE, MODE, STREAM, VEHICLE, DEVICE_STATE, STAGE)
-
-EVENTS = "/events"
-COMMANDS = f"{EVENTS}/commands"
-REASON = "/pilot/reason"
-
-WORLD = "/world"
-GROUND = "/world/ground"
-PAD = "/world/pad"
-OBSTACLES = "/world/obstacles"
-ROUTE = "/world/route"
-TARGET = "/world/target"
-VEHICLE_POSE = "/world/vehicle"
-AIRFRAME = "/world/vehicle/airframe"
-CHASED = "/world/vehicle/chased"
-VEHICLE_TRAIL = "/world/vehicle_trail"
-HAND_TRAIL = "/world/hand_trail"
-HAND = "/world/hand"
-PLUMB = "/world/plumb"
-LEASH = "/world/leash"
-FORCE_ARROW = "/world/force"
-# Length of the arrow that shows the force on the hand, m a newton.
-ARROW_M_PER_N = 0.25
-
-SCENE: tuple[tuple[str, str], ...] = (
-    (f"{GROUND}, {PAD}", "the plane z = 0 and the place the vehicle starts from"),
-    (
-        f"{OBSTACLES}/NAME, {PAD}/NAME, {ROUTE}, {TARGET}",
-        "the mission's obstacles (a gate's parts below its name), pads, route and target",
-    ),
-    (
-        VEHICLE_POSE,
-        "the vehicle's pose; `airframe` below it is a quadrotor 0.65 m wide, whatever it really is",
-    ),
-    (CHASED, "what the Chase view follows: corners without size, far enough apart to keep its distance"),
-    (PLUMB, "a line from the vehicle down to z = 0"),
-    (VEHICLE_TRAIL, "the way flown, in strips of five states"),
-    (HAND_TRAIL, "the way of p_h while engaged, likewise"),
-    (HAND, "p_h as a point, while engaged"),
-    (LEASH, "p̃ as a line from p(t − d₁) to p_h, while engaged"),
-    (
-        FORCE_ARROW,
-        f"the force on the hand as an arrow at the vehicle, {ARROW_M_PER_N} m a newton, while engaged",
-    ),
-)
-
-
 def tables() -> str:
     """Return the schema as Markdown tables, as `docs/logs.md` shows it."""
     lines = ["| entity | parts | unit | rows | meaning |", "|---|---|---|---|---|"]
     for quantity in (*QUANTITIES, heartbeat("ROLE")):
-        parts = ", ".join(quantity.parts)
+        parts = _listed(quantity.parts)
         lines.append(
             f"| `{quantity.path}` | {parts} | {quantity.unit} | {quantity.rate} | {quantity.meaning} |"
         )
@@ -303,3 +245,7 @@ def tables() -> str:
     lines += ["", "| in the scene | what it shows |", "|---|---|"]
     lines += [f"| `{path}` | {meaning} |" for path, meaning in SCENE]
     return "\n".join(lines)
+
+
+def _listed(parts: tuple[str, ...]) -> str:
+    return ", ".join(parts) if len(parts) < _MANY else f"{parts[0]}, {parts[1]}, … {parts[-1]}"

@@ -11,6 +11,7 @@ from groundstation.recording.batch import Batch
 from groundstation.recording.blueprint import blueprint
 from groundstation.recording.changes import Changes
 from groundstation.recording.columns import Buttons, Heartbeats, number_chunks
+from groundstation.recording.echoes import Echoes
 from groundstation.recording.feed import LiveFeed
 from groundstation.recording.file import FlightFile, RecordingError
 from groundstation.recording.item import Item
@@ -51,6 +52,7 @@ class Translator:
         self._heartbeats = Heartbeats()
         self._buttons = Buttons()
         self._motion = Motion(start, heading=run.settings.mapping.frame == "heading")
+        self._echoes = Echoes(start)
         self._device = b""
 
     def opening(self) -> Iterator[Item]:
@@ -67,6 +69,7 @@ class Translator:
         yield from self._changes.chunks(batch)
         yield from self._changes.texts(batch)
         yield from self._motion.chunks(batch)
+        yield from self._echoes.chunks(batch)
         for report in batch.of(DEVICE_REPORT):
             if report.present and (known := report.name + report.serial) != self._device:
                 self._device = known

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import cycle, islice
 
 import rerun as rr
 
-from groundstation.recording import palette, schema
+from groundstation.recording import lanes, palette, schema
 from groundstation.recording.item import Still
 
 _WIDTH = 1.5
@@ -17,20 +18,22 @@ _COLOURS: dict[str, tuple[palette.Colour, ...]] = {
     schema.ROUND_TRIP.path: (palette.ORANGE,),
     schema.HANDLE_AGE.path: (palette.GREEN,),
     schema.SILENCE.path: (palette.PURPLE,),
+    schema.RECKONED.path: (palette.YELLOW,),
     schema.TARGET_DISTANCE.path: (palette.GREEN,),
+    schema.CUE_SIZES.path: (palette.ORANGE, palette.SKY, palette.GREEN, palette.VERMILION, palette.GREY),
 }
 
 
 def static_styles() -> Iterator[Still]:
     """Yield names and colours of every quantity's series and every lane's states."""
     for quantity in schema.QUANTITIES:
-        colours = _COLOURS.get(quantity.path, palette.PARTS[: len(quantity.parts)])
+        colours = _COLOURS.get(quantity.path) or tuple(islice(cycle(palette.PARTS), len(quantity.parts)))
         names = [_series_name(quantity, place) for place in range(len(quantity.parts))]
         yield Still(
             quantity.path,
             rr.SeriesLines(colors=list(colours), names=names, widths=[_WIDTH] * len(names)),
         )
-    for lane in schema.LANES:
+    for lane in lanes.LANES:
         words = [word for word, _ in lane.states]
         colours = [palette.TONES[tone] for _, tone in lane.states]
         yield Still(lane.path, rr.StateConfiguration(values=words, labels=words, colors=colours))

@@ -1,4 +1,4 @@
-"""A recorded flight as NumPy arrays, by the entities of `groundstation.recording.schema`."""
+"""A recorded flight as NumPy arrays, by the entities of `groundstation.recording.schema` and `lanes`."""
 
 from __future__ import annotations
 
@@ -12,8 +12,10 @@ import numpy.typing as npt
 from rerun.chunk import Chunk
 
 from groundstation.config import Settings
-from groundstation.recording import schema
-from groundstation.recording.schema import Lane, Quantity
+from groundstation.recording import entities, schema
+from groundstation.recording.lanes import Lane
+from groundstation.recording.schema import Quantity
+from groundstation.review.earlier import settings_from
 from groundstation.review.rrd import read_chunks
 from groundstation.training.mission import Mission
 
@@ -87,7 +89,7 @@ class Flight:
 
     def events(self) -> list[Line]:
         """Return all events, commands and answers, in the order of their times."""
-        paths = [path for path in self._timed if path.startswith(f"{schema.EVENTS}/")]
+        paths = [path for path in self._timed if path.startswith(f"{entities.EVENTS}/")]
         lines = [
             Line(t, words[_LEVEL], path.rpartition("/")[2], words[_TEXT])
             for path in paths
@@ -106,8 +108,12 @@ class Flight:
 
     @property
     def settings(self) -> Settings:
-        """The settings flown with."""
-        return msgspec.json.decode(self.properties()["settings_json"], type=Settings)
+        """The settings flown with.
+
+        Raises:
+            InputError: The flight was recorded by a later version of this program.
+        """
+        return settings_from(self.properties())
 
     @property
     def duration(self) -> float:

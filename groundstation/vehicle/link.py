@@ -1,7 +1,7 @@
 """The link process: the only one that speaks to the vehicle.
 
 bus ──setpoint──► OffboardStream ──► MAVSDK ──► gate ──► transport ──► vehicle
-bus ◄──state, status, answers, events── VehicleView, Commander ◄── MAVSDK ◄──┘
+bus ◄──state, obstacles, status, answers, events── VehicleView, ObstacleView, Commander ◄── MAVSDK ◄──┘
 """
 
 from __future__ import annotations
@@ -22,6 +22,7 @@ from groundstation.messages import (
     ANSWER_TEXT,
     COMMAND,
     COMMAND_ANSWER,
+    OBSTACLES,
     SETPOINT,
     VEHICLE_STATE,
     VEHICLE_STATUS,
@@ -35,6 +36,7 @@ from groundstation.messages import (
 from groundstation.run import Run
 from groundstation.vehicle.commander import STEERING, Commander
 from groundstation.vehicle.gate import Gate
+from groundstation.vehicle.obstacle_view import ObstacleView
 from groundstation.vehicle.offboard import Act, OffboardStream, Seen
 from groundstation.vehicle.pump import Pump
 from groundstation.vehicle.round_trip import RoundTrip
@@ -52,7 +54,18 @@ _DEFAULT_TAKEOFF_M = 2.0
 _REASON_S = 1.5
 _LEAVE_S = 0.2
 
-_PILOTS = frozenset({CommandKind.ENGAGE, CommandKind.DISENGAGE})
+# Commands that are the pilot's to follow and to answer.
+_PILOTS = frozenset(
+    {
+        CommandKind.ENGAGE,
+        CommandKind.DISENGAGE,
+        CommandKind.MAPPING,
+        CommandKind.FINE,
+        CommandKind.CLUTCH,
+        CommandKind.PRESET,
+        CommandKind.CUES,
+    }
+)
 
 
 class Link:
@@ -74,6 +87,7 @@ class Link:
         self._waker = bus.waker(SETPOINT)
         self._commands = bus.subscriber(COMMAND)
         self._states = bus.publisher(VEHICLE_STATE)
+        self._ranges = bus.publisher(OBSTACLES)
         self._statuses = bus.publisher(VEHICLE_STATUS)
         self._answers = bus.publisher(COMMAND_ANSWER)
         self._status = VehicleStatus(rtt=math.nan, battery=math.nan, voltage=math.nan)
@@ -82,6 +96,7 @@ class Link:
         self._offboard_answers: queue.SimpleQueue[tuple[bool, str]] = queue.SimpleQueue()
         self._commander: Commander | None = None
         self._round_trip: RoundTrip | None = None
+        self._obstacles: ObstacleView | None = None
         self._given = 0
         self._denials: deque[tuple[float, str]] = deque(maxlen=4)
         self._next_status = 0.0
@@ -96,10 +111,11 @@ class Link:
         else:
             self._fly(now)
             self._collect_answers(now)
+        if self._round_trip:
+            self._round_trip.turn()
         for command in self._commands.drain():
             self._obey(command.number, CommandKind(command.kind), now)
-        if self._view.fresh:
-            self._states.send(self._view.take_state())
+        self._pass_on_sights()
         self._pass_on_notes(now)
         if now >= self._next_status or self._changed():
             self._next_status = now + _STATUS_S
@@ -129,6 +145,7 @@ class Link:
         altitude = mission.takeoff_altitude_m if mission else _DEFAULT_TAKEOFF_M
         self._commander = Commander(system, altitude, lambda ok, why: self._offboard_answers.put((ok, why)))
         self._round_trip = RoundTrip(system, time.monotonic)
+        self._obstacles = ObstacleView(system, self._view.yaw, self._notes, time.monotonic)
         self._view.attach(system, self._run.settings.rates.telemetry)
         self._status.system_id = system.get_system_id()
         self._bus.event(Severity.INFO, f"Vehicle {self._status.system_id} found on {self._run.url}.")
@@ -202,6 +219,14 @@ class Link:
         said = [text for t, text in self._denials if now - t < _REASON_S]
         return f"{why} ({said[-1]})" if said else why
 
+    def _pass_on_sights(self) -> None:
+        """Send where the vehicle is and what it sees, as soon as it has told."""
+        if self._view.fresh:
+            self._states.send(self._view.take_state())
+        if self._obstacles:
+            for record in self._obstacles.records():
+                self._ranges.send(record)
+
     def _pass_on_notes(self, now: float) -> None:
         while not self._notes.empty():
             severity, text = self._notes.get()
@@ -224,7 +249,6 @@ class Link:
         status.heard_t = self._pump.heard_t
         status.loss = self._pump.loss()
         if self._round_trip:
-            self._round_trip.ask()
             status.rtt = self._round_trip.seconds
         status.battery, status.voltage = view.battery, view.voltage
         status.sent, status.dropped = self._gate.sent, self._gate.dropped

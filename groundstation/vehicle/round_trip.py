@@ -2,16 +2,23 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
-import math
+from collections import deque
 from collections.abc import Callable
 
+import msgspec
 from mavsdk import System
 from mavsdk.plugins.mavlink_direct import MavlinkDirect, MavlinkDirectError, MavlinkMessage
 
-_EVERY_S = 0.5
-_BELIEVABLE_S = 10.0
-_SMOOTHING = 0.3
+from groundstation.vehicle.trips import Trips
+
+EVERY_S = 0.1
+
+
+class _Timesync(msgspec.Struct):
+    tc1: int
+    ts1: int
 
 
 class RoundTrip:
@@ -20,36 +27,45 @@ class RoundTrip:
     Args:
         system: The vehicle.
         clock: Monotonic seconds.
-
-    Attributes:
-        seconds: Smoothed round trip, s; NaN before the first answer.
     """
 
     def __init__(self, system: System, clock: Callable[[], float]) -> None:
         self._clock = clock
         self._system_id = system.get_system_id()
         self._direct = MavlinkDirect(system)
+        self._heard: deque[tuple[float, str]] = deque(maxlen=64)
+        self._trips = Trips()
         self._next = 0.0
-        self.seconds = math.nan
-        self._direct.subscribe_message("TIMESYNC", self._on_answer)
+        self._direct.subscribe_message("TIMESYNC", self._on_message)
 
-    def ask(self) -> None:
-        """Ask again when it is time."""
+    def turn(self) -> None:
+        """Take the answers that came, and ask again when it is time."""
+        while self._heard:
+            self._take(*self._heard.popleft())
         now = self._clock()
         if now < self._next:
             return
-        self._next = now + _EVERY_S
-        fields = json.dumps({"tc1": 0, "ts1": int(now * 1e9)})
-        try:
+        self._next = now + EVERY_S
+        stamp = int(now * 1e9)
+        self._trips.asked(stamp, now)
+        fields = json.dumps({"tc1": 0, "ts1": stamp})
+        # A question that cannot be sent is lost like any other.
+        with contextlib.suppress(MavlinkDirectError):
             self._direct.send_message(MavlinkMessage("TIMESYNC", 0, 0, self._system_id, 0, fields))
-        except MavlinkDirectError:
-            self.seconds = math.nan
 
-    def _on_answer(self, message: MavlinkMessage, _: object) -> None:
-        fields = json.loads(message.fields_json)
-        trip = self._clock() - int(fields["ts1"]) * 1e-9
-        # Somebody else's question, or our own echoed unanswered, has tc1 = 0 or a foreign clock.
-        if int(fields["tc1"]) == 0 or not 0.0 < trip < _BELIEVABLE_S:
+    @property
+    def seconds(self) -> float:
+        """The round trip as it is known now, s; NaN before the first answer."""
+        return self._trips.seconds(self._clock())
+
+    def _take(self, t: float, fields: str) -> None:
+        try:
+            told = msgspec.json.decode(fields, type=_Timesync)
+        except (msgspec.DecodeError, ValueError):
             return
-        old = self.seconds
-        self.seconds = trip if math.isnan(old) else old + _SMOOTHING * (trip - old)
+        # A question of the vehicle's own has tc1 = 0.
+        if told.tc1 != 0:
+            self._trips.answered(told.ts1, t)
+
+    def _on_message(self, message: MavlinkMessage, _: object) -> None:
+        self._heard.append((self._clock(), message.fields_json))

@@ -30,6 +30,8 @@ _MODES = {
     plugin.FlightMode.POSCTL: FlightMode.POSITION,
     plugin.FlightMode.UNKNOWN: FlightMode.UNKNOWN,
 }
+# A heading is one of about the same moment as a position for so long, s.
+_ATTITUDE_S = 0.5
 _ALARMING = plugin.StatusTextType.ERROR
 _WARNING = plugin.StatusTextType.WARNING
 
@@ -74,7 +76,7 @@ class VehicleView:
         self._telemetry: Telemetry | None = None
         self._origin = Origin()
         self._state = VehicleState()
-        self._attitude_t = 0.0
+        self._attitude_t = -math.inf
         self._yaw_rate = 0.0
         self.fresh = False
         self.mode = FlightMode.UNKNOWN
@@ -104,6 +106,11 @@ class VehicleView:
     def connected(self) -> bool:
         """Say whether MAVSDK still hears the vehicle's heartbeat."""
         return self._system is not None and self._system.is_connected()
+
+    def yaw(self) -> float:
+        """Return the newest yaw, rad; NaN while none has come lately."""
+        fresh = self._clock() - self._attitude_t < _ATTITUDE_S
+        return self._state.position[3] if fresh else math.nan
 
     def take_state(self) -> VehicleState:
         """Return the newest state for publishing."""
@@ -141,7 +148,7 @@ class VehicleView:
         state.position[:3] = position
         state.velocity[:] = (*velocity, self._yaw_rate)
         # A position is worth nothing to equation (3) without a heading of about the same moment.
-        state.valid = int(now - self._attitude_t < 0.5)
+        state.valid = int(now - self._attitude_t < _ATTITUDE_S)
         state.t = now
         self.fresh = True
 

@@ -1,0 +1,1 @@
+"""Flies many flights in virtual time and compares them."""

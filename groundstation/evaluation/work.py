@@ -1,0 +1,60 @@
+"""Flies tasks on this machine, in processes of their own, one flight at a time each."""
+
+from __future__ import annotations
+
+import itertools
+import multiprocessing
+import os
+import signal
+import threading
+from collections.abc import Generator, Sequence
+from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
+from concurrent.futures.process import BrokenProcessPool
+
+from groundstation.evaluation.case import Result, Task
+from groundstation.evaluation.trial import fly
+
+# Tasks handed out ahead for each process: none waits for the next.
+_AHEAD = 2
+
+
+class WorkError(Exception):
+    """The work cannot go on; the message says why, in one sentence."""
+
+
+def fly_here(tasks: Sequence[Task], jobs: int) -> Generator[Result]:
+    """Yield results as flights end. Closing the iterator stops the flights under way.
+
+    Raises:
+        WorkError: A process was killed.
+        InputError: A controller cannot be made.
+    """
+    pool = ProcessPoolExecutor(jobs, multiprocessing.get_context("spawn"), _begin)
+    ahead = iter(tasks)
+    try:
+        flying = {pool.submit(fly, task) for task in itertools.islice(ahead, _AHEAD * jobs)}
+        while flying:
+            ended: set[Future[Result]]
+            ended, flying = wait(flying, return_when=FIRST_COMPLETED)
+            flying |= {pool.submit(fly, task) for task in itertools.islice(ahead, len(ended))}
+            for future in ended:
+                yield future.result()
+    except BrokenProcessPool as error:
+        raise WorkError("a process that was flying was killed, perhaps for want of memory") from error
+    finally:
+        pool.shutdown(wait=False, cancel_futures=True)
+        for child in multiprocessing.active_children():
+            child.terminate()
+
+
+def _begin() -> None:
+    """Leave Ctrl-C to the parent, and end with it, however it ends."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    threading.Thread(target=_end_with_parent, daemon=True).start()
+
+
+def _end_with_parent() -> None:
+    parent = multiprocessing.parent_process()
+    if parent is not None:
+        parent.join()
+    os._exit(1)

@@ -1,0 +1,120 @@
+"""What is near the vehicle, as distance and way out: obstacles, what its sensors see, floor, ceiling and fence.
+
+Every thing is kept away from by a half-space: all obstacles are convex and their distance is exact, so no point of
+one lies on the near side of the plane through its nearest point. World ENU, m.
+"""
+
+from __future__ import annotations
+
+from math import dist, hypot, inf
+from typing import NamedTuple
+
+from drivers.device import Vector3
+from groundstation import config
+from groundstation.pilot.surroundings import Surroundings
+from sim.environment.world import Solid, World
+
+# Candidates are looked up anew when the vehicle has moved so far, m.
+_MOVED_M = 1.0
+_SEEN = "sensor"
+_FAR = (inf, inf, inf)
+
+
+class Near(NamedTuple):
+    """Something near.
+
+    Attributes:
+        gap: From the hull to it, m; negative within.
+        normal: Unit vector away from it.
+        name: The obstacle's, or "floor", "ceiling", "fence", "sensor".
+        solid: It can be run into; the bounds of the space that one may fly in cannot.
+    """
+
+    gap: float
+    normal: Vector3
+    name: str
+    solid: bool
+
+
+class Candidates(NamedTuple):
+    """All solids with their distance at some place, nearest first, until the vehicle has moved on from there."""
+
+    at: Vector3 = _FAR
+    solids: tuple[tuple[float, Solid], ...] = ()
+
+
+class Neighbourhood:
+    """Finds what is near.
+
+    Args:
+        surroundings: Obstacles and the vehicle's size.
+        shield: Floor, ceiling, fence.
+    """
+
+    def __init__(self, surroundings: Surroundings, shield: config.Shield) -> None:
+        self._solids = World(surroundings.obstacles).solids
+        self._radius = surroundings.radius
+        self._shield = shield
+
+    def look(
+        self, candidates: Candidates, point: Vector3, seen: tuple[Vector3, ...], reach: float
+    ) -> tuple[Candidates, tuple[Near, ...]]:
+        """Return what is near a point, and the candidates for the next look.
+
+        Args:
+            candidates: Of the look before.
+            point: The vehicle's middle, world, m.
+            seen: Points on obstacles that the vehicle's sensors see, world, m.
+            reach: Up to which gap a thing is near, m.
+        """
+        x, y, z = point
+        moved = dist(point, candidates.at)
+        if moved > _MOVED_M:
+            candidates, moved = self._candidates(point), 0.0
+        within = reach + self._radius
+        found: list[Near] = []
+        for before, solid in candidates.solids:
+            # No distance changes faster than the vehicle moves; those that follow are further still.
+            if before - moved >= within:
+                break
+            distance = solid.distance(x, y, z)
+            if distance < within:
+                found.append(Near(distance - self._radius, solid.normal(x, y, z), solid.name, solid=True))
+        for at in seen:
+            distance = dist(point, at)
+            if 0.0 < distance < within:
+                away = ((x - at[0]) / distance, (y - at[1]) / distance, (z - at[2]) / distance)
+                found.append(Near(distance - self._radius, away, _SEEN, solid=True))
+        self._bounds(found, point, reach)
+        return candidates, tuple(found)
+
+    def _candidates(self, point: Vector3) -> Candidates:
+        measured = ((solid.distance(*point), solid) for solid in self._solids)
+        return Candidates(point, tuple(sorted(measured, key=_first)))
+
+    def _bounds(self, found: list[Near], point: Vector3, reach: float) -> None:
+        """Add the bounds of the space to fly in. They hold for the vehicle's middle, the fence for its hull."""
+        x, y, z = point
+        shield = self._shield
+        if z - shield.floor < reach:
+            found.append(Near(z - shield.floor, (0.0, 0.0, 1.0), "floor", solid=False))
+        if shield.ceiling and shield.ceiling - z < reach:
+            found.append(Near(shield.ceiling - z, (0.0, 0.0, -1.0), "ceiling", solid=False))
+        if shield.fence:
+            away = hypot(x, y)
+            gap = shield.fence - away - self._radius
+            if gap < reach and away > 0.0:
+                found.append(Near(gap, (-x / away, -y / away, 0.0), "fence", solid=False))
+
+
+def nearest(near: tuple[Near, ...]) -> Near | None:
+    """Return the nearest thing that can be run into."""
+    return min((thing for thing in near if thing.solid), key=_gap, default=None)
+
+
+def _first(measured: tuple[float, Solid]) -> float:
+    return measured[0]
+
+
+def _gap(thing: Near) -> float:
+    return thing.gap

@@ -1,0 +1,58 @@
+"""What force a budget of energy covers, though the motion of the coming tick is not known yet."""
+
+from __future__ import annotations
+
+from math import sqrt
+
+from drivers.device import Vector3
+
+# By no more than this hand or handle accelerate within a tick, m/s² (a force of 10 N on 0.1 kg).
+ACCELERATION = 100.0
+# Slower than this, m/s, the handle has no direction.
+STILL = 1e-9
+
+
+def lowered(force: Vector3, velocity: Vector3, speed: float, allowed: float) -> Vector3:
+    """Return the force, N, with its part along the motion brought down to `allowed`, N, where it is more.
+
+    Args:
+        force: N.
+        velocity: Of the handle, m/s.
+        speed: Its length, not zero.
+        allowed: N along the motion; less than zero brakes.
+    """
+    (x, y, z), (u, v, w) = force, velocity
+    along = (x * u + y * v + z * w) / speed
+    if along <= allowed:
+        return force
+    less = (along - allowed) / speed
+    return x - less * u, y - less * v, z - less * w
+
+
+def no_longer(force: Vector3, wanted: Vector3, damping: float) -> Vector3:
+    """Return a damped force, N, shortened to the longer of the one wanted and the damping alone, N.
+
+    What is wanted is within the device's limit, so what is rendered is as well.
+    """
+    (x, y, z), (a, b, c) = force, wanted
+    most = max(a * a + b * b + c * c, damping * damping)
+    length = x * x + y * y + z * z
+    if length <= most:
+        return force
+    share = sqrt(most / length)
+    return x * share, y * share, z * share
+
+
+def covered(force: Vector3, velocity: Vector3, dt: float, budget: float) -> Vector3:
+    """Return the force, shortened until it cannot give more than `budget`, J, whatever motion the tick brings.
+
+    Within a tick the handle moves by v dt, and by at most r = ½ a dt² beside it. Then f·Δx ≤ f·v dt + |f| r, which
+    grows with the length of f. A force that brakes for certain needs no budget.
+    """
+    (x, y, z), (u, v, w) = force, velocity
+    unseen = 0.5 * ACCELERATION * dt * dt
+    most = (x * u + y * v + z * w) * dt + sqrt(x * x + y * y + z * z) * unseen
+    if most <= 0.0 or most <= budget:
+        return force
+    share = max(0.0, budget) / most
+    return x * share, y * share, z * share

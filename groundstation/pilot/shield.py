@@ -1,0 +1,154 @@
+"""The shield: keeps the velocity asked for out of obstacles and fence, and above the floor, and no more than that.
+
+A control-barrier guard (Ames et al. 2019, Control barrier functions: theory and applications). To a plane at a gap
+h a vehicle that needs a time T to react and then brakes with a may fly at
+
+    s(h) = a (√(T² + 2 h / a) − T),        h = s T + s² / (2 a)
+
+so the velocity is kept within n · u ≥ −s(h) for each thing near, with n its way out; of all such velocities the one
+nearest to what the hand asks for is flown. The gap is that of the forecast: where the vehicle will be when the
+setpoint reaches it, so the delay is in it; T and a are the vehicle's response and the limits; the push of the wind,
+and a speed that is too high already, are held against.
+"""
+
+from __future__ import annotations
+
+from math import cos, sin, sqrt
+from typing import NamedTuple, Protocol
+
+from drivers.device import Vector3
+from groundstation import config
+from groundstation.frames import Vector4
+from groundstation.pilot.halfspaces import Halfspace, nearest_within
+from groundstation.pilot.margin import Lags
+from groundstation.pilot.nearby import Near
+
+# Out of a margin that was entered all the same, at so much a metre and at most so fast, 1/s and m/s.
+_RETREAT, _RETREAT_SPEED = 1.0, 0.4
+# How hard a speed that is too high already is held against: m/s a m/s.
+_AGAINST = 1.0
+# The setpoint is sent at 50 Hz: on average it waits half of that.
+_SENDING_S = 0.02
+_FELT = 1e-3
+
+
+class Situation(NamedTuple):
+    """What a guard looks at.
+
+    Attributes:
+        near: What is near where the vehicle will be.
+        velocity: The vehicle's then, world, m/s.
+        yaw: Its yaw then, rad.
+        push: Disturbing acceleration, world, m/s².
+    """
+
+    near: tuple[Near, ...]
+    velocity: Vector3
+    yaw: float
+    push: Vector3
+
+
+class Guarded(NamedTuple):
+    """What a guard makes of a velocity.
+
+    Attributes:
+        velocity: The one that may be flown, vehicle's axes, m/s and rad/s.
+        by: What it keeps away from, or "" where nothing was changed.
+    """
+
+    velocity: Vector4
+    by: str = ""
+
+
+class Guard(Protocol):
+    """Makes a velocity safe."""
+
+    def reach(self, speed: float) -> float:
+        """Return the gap up to which things matter at a speed, m/s; m."""
+        ...
+
+    def guard(self, wanted: Vector4, situation: Situation) -> Guarded:
+        """Return the velocity nearest to the wanted one that is safe; vehicle's axes, m/s and rad/s."""
+        ...
+
+
+class Barrier:
+    """The control-barrier guard.
+
+    Args:
+        settings: Margin and braking.
+        limits: Acceleration and jerk that setpoints keep to.
+        lags: The vehicle's response, compensation included.
+    """
+
+    def __init__(self, settings: config.Shield, limits: config.Limits, lags: Lags) -> None:
+        self._margin = settings.margin
+        self._braking = settings.braking * limits.acceleration
+        # From full acceleration towards a thing to full braking takes 2 a / j; half of that is lost.
+        self._jerk_s = limits.acceleration / limits.jerk
+        self._lags = lags
+        self._gain = max(1.0, *(lag.gain for lag in lags[:3]))
+        self._slowest_s = _SENDING_S + self._jerk_s + max(lag.time for lag in lags[:3])
+
+    def reach(self, speed: float) -> float:
+        """Return the gap in which a vehicle told this speed, or at it, m/s, stops whatever way it flies; m."""
+        top = self._gain * speed
+        return self._margin + top * self._slowest_s + top * top / (2.0 * self._braking)
+
+    def guard(self, wanted: Vector4, situation: Situation) -> Guarded:
+        """Return the velocity nearest to the wanted one that is safe; vehicle's axes, m/s and rad/s."""
+        forward, left, up, turn = wanted
+        planes: list[Halfspace] = []
+        by, worst = "", _FELT
+        c, s = cos(situation.yaw), sin(situation.yaw)
+        for thing in situation.near:
+            plane = self._plane(thing, situation, c, s)
+            (a, b, d), offset = plane
+            planes.append(plane)
+            excess = offset - (a * forward + b * left + d * up)
+            if excess > worst:
+                by, worst = thing.name, excess
+        if not by:
+            return Guarded(wanted)
+        found = nearest_within((forward, left, up), planes)
+        # Between things that ask for opposite ways nothing is right but to stand.
+        x, y, z = found if found is not None else (0.0, 0.0, 0.0)
+        return Guarded((x, y, z, turn), by)
+
+    def _plane(self, thing: Near, situation: Situation, c: float, s: float) -> Halfspace:
+        """Return the half-space of setpoints, vehicle's axes, that one thing leaves."""
+        (nx, ny, nz), (x, y, z), (px, py, pz) = thing.normal, situation.velocity, situation.push
+        along, across = c * nx + s * ny, c * ny - s * nx
+        f, lateral, vertical = self._lags[0], self._lags[1], self._lags[2]
+        a, b, d = f.gain * along, lateral.gain * across, vertical.gain * nz
+        lag = f.time * along * along + lateral.time * across * across + vertical.time * nz * nz
+        reaction = _SENDING_S + self._jerk_s + lag
+        bound = self._speed(thing.gap - (self._margin if thing.solid else 0.0), reaction)
+        # The wind's push shifts the velocity by push · lag; only one towards the thing is held against.
+        blown = -(nx * px + ny * py + nz * pz) * lag
+        if blown > 0.0:
+            bound -= blown
+        closing = -(nx * x + ny * y + nz * z)
+        if closing > bound:
+            bound -= _AGAINST * (closing - bound)
+        size = sqrt(a * a + b * b + d * d)
+        return (a / size, b / size, d / size), -bound / size
+
+    def _speed(self, gap: float, reaction: float) -> float:
+        """Return the speed that may be flown towards a thing, m/s; negative: away from it."""
+        if gap < 0.0:
+            return max(_RETREAT * gap, -_RETREAT_SPEED)
+        braking = self._braking
+        return braking * (sqrt(reaction * reaction + 2.0 * gap / braking) - reaction)
+
+
+class Off:
+    """No guard: everything that is wanted is flown."""
+
+    def reach(self, speed: float) -> float:  # noqa: ARG002
+        """Return 0: nothing matters."""
+        return 0.0
+
+    def guard(self, wanted: Vector4, situation: Situation) -> Guarded:  # noqa: ARG002
+        """Return what is wanted."""
+        return Guarded(wanted)

@@ -1,0 +1,130 @@
+"""What a recording holds of states: lanes of words that exclude each other, logged when they change."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+
+from groundstation.training.director import Stage
+
+
+class Tone(Enum):
+    """What a state means for the operator; the viewer's colour of it."""
+
+    IDLE = "idle"
+    WORKING = "working"
+    GOOD = "good"
+    WARNING = "warning"
+    FAULT = "fault"
+
+
+@dataclass(frozen=True, slots=True)
+class Lane:
+    """Something with states that exclude each other, logged when it changes.
+
+    Attributes:
+        path: Entity.
+        meaning: What it is.
+        states: The words it can take, with their meaning for the operator.
+    """
+
+    path: str
+    meaning: str
+    states: tuple[tuple[str, Tone], ...]
+
+
+MODE = Lane(
+    "/state/mode",
+    "Who steers the vehicle, as its heartbeat says",
+    (
+        ("unknown", Tone.IDLE),
+        ("ready", Tone.IDLE),
+        ("takeoff", Tone.WORKING),
+        ("hold", Tone.WORKING),
+        ("offboard", Tone.GOOD),
+        ("return", Tone.WARNING),
+        ("land", Tone.WORKING),
+        ("mission", Tone.WARNING),
+        ("position", Tone.WARNING),
+        ("altitude", Tone.WARNING),
+        ("manual", Tone.WARNING),
+        ("other", Tone.WARNING),
+    ),
+)
+PHASE = Lane(
+    "/state/phase",
+    "How far the hand is coupled to the vehicle",
+    (
+        ("disengaged", Tone.IDLE),
+        ("engaging", Tone.WORKING),
+        ("engaged", Tone.GOOD),
+        ("on leash", Tone.WARNING),
+    ),
+)
+STREAM = Lane(
+    "/state/stream",
+    "The setpoints' stream to the vehicle",
+    (("idle", Tone.IDLE), ("starting", Tone.WORKING), ("flying", Tone.GOOD), ("ended", Tone.WARNING)),
+)
+VEHICLE = Lane(
+    "/state/vehicle",
+    "Vehicle's motors and link",
+    (
+        ("no link", Tone.FAULT),
+        ("disarmed", Tone.IDLE),
+        ("armed", Tone.WORKING),
+        ("in air", Tone.GOOD),
+    ),
+)
+DEVICE_STATE = Lane(
+    "/state/device",
+    "The haptic device",
+    (("absent", Tone.FAULT), ("not homed", Tone.WARNING), ("ready", Tone.GOOD)),
+)
+STAGE = Lane(
+    "/state/stage",
+    "The mission's stage",
+    (
+        (Stage.WAITING.value, Tone.IDLE),
+        (Stage.TAKING_OFF.value, Tone.WORKING),
+        (Stage.ROUTE.value, Tone.WORKING),
+        (Stage.HOLDING.value, Tone.GOOD),
+        (Stage.RETURNING.value, Tone.GOOD),
+        (Stage.DONE.value, Tone.IDLE),
+    ),
+)
+MAPPING = Lane(
+    "/state/mapping",
+    "How the handle moves p_h",
+    (
+        ("rate", Tone.WORKING),
+        ("rate, fine", Tone.WORKING),
+        ("position", Tone.GOOD),
+        ("position, fine", Tone.GOOD),
+        ("clutched", Tone.IDLE),
+        ("waiting for the centre", Tone.WARNING),
+    ),
+)
+PRESET = Lane(
+    "/state/preset",
+    "Which cues and helps there are",
+    (
+        ("paper", Tone.IDLE),
+        ("assisted", Tone.GOOD),
+        ("transparent", Tone.WORKING),
+        ("training", Tone.WORKING),
+    ),
+)
+GUARD = Lane(
+    "/state/guard",
+    "Whether the guard changes what the hand asks for",
+    (("lets pass", Tone.GOOD), ("guards", Tone.WARNING)),
+)
+COMPENSATION = Lane(
+    "/state/compensation",
+    "Whether the vehicle's dynamics are compensated",
+    (("off", Tone.IDLE), ("on", Tone.GOOD)),
+)
+LANES: tuple[Lane, ...] = (
+    PHASE, MODE, STREAM, VEHICLE, DEVICE_STATE, STAGE, MAPPING, PRESET, GUARD, COMPENSATION,
+)  # fmt: skip

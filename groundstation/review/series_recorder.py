@@ -1,0 +1,57 @@
+"""Takes down a virtual flight as a series."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from groundstation.evaluation.sample import Sample
+from groundstation.messages import Phase
+from groundstation.review.series import FlightSeries, clearances
+from sim.scenario import Obstacle
+
+
+class SeriesRecorder:
+    """An observer of a virtual flight whose mapping's frame is the world's: its forces need no turning.
+
+    Args:
+        obstacles: Of the world.
+        radius: Of the vehicle, m.
+    """
+
+    def __init__(self, obstacles: Sequence[Obstacle], radius: float) -> None:
+        self._obstacles = obstacles
+        self._radius = radius
+        self._samples: list[Sample] = []
+
+    def __call__(self, sample: Sample) -> None:
+        """Take note of a sample in which the hand is coupled."""
+        if sample.phase is Phase.ENGAGED:
+            self._samples.append(sample)
+
+    def series(self) -> FlightSeries:
+        """Return what was flown so far; the hand must have been coupled."""
+        samples = self._samples
+        outputs = [sample.outputs for sample in samples]
+        p = np.array([sample.p for sample in samples])
+        t = np.array([sample.t for sample in samples])
+        cues = {
+            name: np.array([getattr(each.cues, name) for each in outputs]) for name in outputs[0].cues._fields
+        }
+        clearance, nearest = clearances(p, self._obstacles, self._radius)
+        return FlightSeries(
+            t=t - t[0],
+            p=p,
+            p_h=np.array([each.p_h for each in outputs]),
+            p_h_rate=np.array([each.p_h_rate for each in outputs]),
+            seen=np.array([each.p for each in outputs]),
+            error=np.array([each.error for each in outputs]),
+            v_ref=np.array([each.v_ref for each in outputs]),
+            executed=np.array([sample.v for sample in samples]),
+            force=np.array([each.force for each in outputs]),
+            cues=cues,
+            wind=np.array([sample.wind for sample in samples]),
+            clearance=clearance,
+            nearest=nearest,
+        )

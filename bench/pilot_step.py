@@ -22,7 +22,7 @@ from sim.airframe import load_airframe
 from sim.scenario import Box, Cylinder, Obstacle, Sphere
 
 BAR_US = 80.0
-DT = 0.001
+DT, _CUT = 0.001, False
 DEVICE = DeviceInfo("bench", "", 4, 0.1, 10.0, 1000.0, 1000.0, "force")
 
 
@@ -67,7 +67,7 @@ class Turn:
             motion = (-0.049 * sin(0.7 * t), 0.054 * cos(0.9 * t), 0.012 * cos(0.4 * t))
             hand = HandleState(place, motion, 0.3 * sin(0.3 * t), 0, homed=True, device_time=t)
             inputs = Inputs(
-                DT, Phase.ENGAGED, False, hand, self._sample, self._tick % 20 * DT, 0.1, 0.0, self._choices,
+                DT, Phase.ENGAGED, _CUT, hand, self._sample, self._tick % 20 * DT, 0.1, 0.0, self._choices,
                 ((3.0, 0.0, 2.0), (0.0, -3.0, 2.0)),
             )  # fmt: skip
             begin = time.perf_counter()

@@ -19,6 +19,7 @@ from groundstation.messages import (
     EVENT,
     HANDLE,
     MISSION_PROGRESS,
+    OBSTACLES,
     PILOT_STATE,
     SERVO_REPORT,
     SETPOINT,
@@ -32,6 +33,7 @@ from groundstation.messages import (
     Handle,
     MissionProgress,
     PilotState,
+    Ranges,
     ServoReport,
     Setpoint,
     VehicleState,
@@ -47,6 +49,7 @@ class Snapshot:
 
     Attributes:
         t: When the snapshot was taken, monotonic s.
+        ranges: What the vehicle's own distance sensors see.
         events: The latest events, oldest first.
         answers: Answers to commands since the last snapshot.
     """
@@ -56,6 +59,7 @@ class Snapshot:
     setpoint: Setpoint | None
     pilot: PilotState | None
     vehicle: VehicleState | None
+    ranges: Ranges | None
     status: VehicleStatus | None
     servo: ServoReport | None
     device: DeviceReport | None
@@ -82,6 +86,7 @@ class Console:
         self._setpoint = bus.subscriber(SETPOINT, depth=1)
         self._pilot = bus.subscriber(PILOT_STATE, depth=1)
         self._vehicle = bus.subscriber(VEHICLE_STATE, depth=1)
+        self._ranges = bus.subscriber(OBSTACLES, depth=1)
         self._status = bus.subscriber(VEHICLE_STATUS, depth=1)
         self._servo = bus.subscriber(SERVO_REPORT, depth=1)
         self._device = bus.subscriber(DEVICE_REPORT, depth=1)
@@ -99,6 +104,7 @@ class Console:
             setpoint=self._setpoint.newest(),
             pilot=self._pilot.newest(),
             vehicle=self._vehicle.newest(),
+            ranges=self._ranges.newest(),
             status=self._status.newest(),
             servo=self._servo.newest(),
             device=self._device.newest(),
@@ -107,8 +113,14 @@ class Console:
             answers=tuple(self._answers.drain()),
         )
 
-    def command(self, kind: CommandKind) -> int:
-        """Send a command and return its number, which its answer will carry."""
+    def command(self, kind: CommandKind, value: int = 0) -> int:
+        """Send a command and return its number, which its answer will carry.
+
+        Args:
+            kind: What is asked for.
+            value: What a choice chooses, see `groundstation.messages.Command`.
+        """
         number = next(self._numbers)
-        self._commands.send(Command(t=self._clock(), number=number, kind=int(kind), source=self._source))
+        command = Command(t=self._clock(), number=number, kind=kind, value=value, source=self._source)
+        self._commands.send(command)
         return number

@@ -68,8 +68,6 @@ def test_the_vehicles_sensors_reach_the_pilot(tmp_path):
         post, wall = feed.seen
         assert math.hypot(post[0] + 1.5, post[1] - 1.5) == pytest.approx(0.3, abs=0.2)
         assert wall[0] + wall[1] == pytest.approx(6.0, abs=0.5)
-        times = [ranges.t for ranges in heard]
-        assert len(times) / (times[-1] - times[0]) == pytest.approx(10.0, rel=0.3)
         assert 0.0 < view.status.rtt < 0.5
         assert feed.delay == pytest.approx(view.status.rtt, abs=0.5)
         assert feed.loss == 0.0

@@ -49,3 +49,10 @@ def test_a_vehicle_facing_north_sees_north_as_forward():
 @given(st.tuples(lengths, lengths, lengths), angles)
 def test_turning_keeps_lengths(vector, yaw):
     assert math.isclose(math.hypot(*frames.body_from_world(vector, yaw)), math.hypot(*vector), rel_tol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("bearing_deg", "angle"), [(0, 0), (90, -math.pi / 2), (-90, math.pi / 2), (180, math.pi), (720, 0)]
+)
+def test_bearings_by_hand(bearing_deg, angle):
+    assert math.isclose(frames.angle_from_bearing(bearing_deg), angle, abs_tol=1e-12)

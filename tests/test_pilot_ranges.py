@@ -1,6 +1,7 @@
 """From a ring of distances to the points that matter: the right ones, and the vehicle's own echo left out."""
 
 import math
+from random import Random
 
 import pytest
 from hypothesis import given, settings
@@ -32,6 +33,19 @@ def test_a_wall_is_its_nearest_point_wherever_the_vehicle_looks():
         pose = (0.0, 1.0, 2.0, yaw)
         (point,) = mattering(seen_in(wall, pose), pose)
         assert point == pytest.approx((2.95, 1.0, 2.0), abs=0.14)
+
+
+@pytest.mark.parametrize("noise", [0.0, 0.02])
+def test_a_wall_is_straight_however_coarse_and_noisy_its_echoes_are(noise):
+    """Centimetres and sectors of 5°; the points may not jump from one look to the next."""
+    wall, random = World([Wall("wall", (1.0, -9.0), (1.0, 9.0), 4.0)]), Random(1)
+    for step in range(60):
+        pose = (0.0, 0.03 * step, 2.0, 0.02 * step)
+        distances = [round(d + random.gauss(0.0, noise), 2) for d in ring(wall, pose)]
+        (x, y, _), *more = mattering(Seen(distances, NAN, NAN), pose)
+        assert not more
+        assert x == pytest.approx(0.95, abs=0.01 + 4.0 * noise)
+        assert math.atan2(y - pose[1], x) == pytest.approx(0.0, abs=0.02 + 5.0 * noise)
 
 
 def test_a_corner_is_two_points_and_a_corridor_with_an_end_three():

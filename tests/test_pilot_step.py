@@ -203,7 +203,7 @@ def test_what_is_not_finite_flies_nothing_and_presses_on_nothing() -> None:
             assert held.fault == "the handle gave a number that is not finite"
         flight.sample = VehicleSample((0.0, nan, 0.0, 0.0))
         flight.telemetry = False
-        assert flight.step(hand(x=0.1)).fault == "the vehicle gave a number that is not finite"
+        assert flight.step(hand(x=0.1)).fault == "the vehicle gave a number that cannot be"
         # What came before is not spoilt: the next sound tick flies again.
         flight.telemetry, flight.tick = True, 0
         sound = flight.run(0.5, hand(x=0.1))[-1]

@@ -132,6 +132,14 @@ def test_the_strongest_force_is_looked_for_only_near_obstacles():
     assert strongest_near(series._replace(cues={"position": force})) == (5.0, series.nearest[closest])
 
 
+def test_an_obstacle_that_comes_near_only_at_the_end_counts_too():
+    series = a_series()
+    clearance = np.full(len(series.t), 2.0)
+    clearance[-1] = 0.5
+    push = strongest_near(series._replace(clearance=clearance))
+    assert push == (pytest.approx(np.linalg.norm(series.cues["position"][-1])), series.nearest[-1])
+
+
 def flown(series, *, held=True, collisions=0):
     return Flown(series, replace(MISSION, target=TARGET), RADIUS, collisions, held)
 

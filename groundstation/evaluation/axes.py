@@ -9,7 +9,7 @@ from typing import NamedTuple, TypeVar
 
 from groundstation.errors import InputError
 from groundstation.evaluation.remote_site import STEP_S
-from groundstation.evaluation.trial import AS_IN_MISSION, CALM, PRESETS
+from groundstation.evaluation.trial import AS_IN_MISSION, CALM, PRESET_NAMES
 from sim.people import PEOPLE
 
 GUARDS = ("barrier", "risk_field", "off")
@@ -76,8 +76,8 @@ def _list(option: str, text: str, read: Callable[[str, str], T]) -> tuple[T, ...
 
 
 def _controller(option: str, text: str) -> str:
-    if text not in PRESETS and ":" not in text:
-        raise InputError(f"{option} {text}: is none of {', '.join(PRESETS)}, nor MODULE:CLASS.")
+    if text not in PRESET_NAMES and ":" not in text:
+        raise InputError(f"{option} {text}: is none of {', '.join(PRESET_NAMES)}, nor MODULE:CLASS.")
     return text
 
 

@@ -17,7 +17,7 @@ class Case(Struct, frozen=True, forbid_unknown_fields=True):
 
     Attributes:
         controller: A preset of the program's own controller, or another's as `module:Class`.
-        guard: As `shield.guard` of the settings.
+        guard: As `shield.guard` of the settings; "off" with a preset that has none.
         mission: Its name.
         delay: Round trip, s: half of it each way.
         jitter: By how much each way's delay varies, s.

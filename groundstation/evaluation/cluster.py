@@ -13,14 +13,14 @@ from typing import TYPE_CHECKING, cast
 from groundstation import __version__
 from groundstation.errors import InputError
 from groundstation.evaluation.case import Result, Task
-from groundstation.evaluation.trial import PRESETS, fly
+from groundstation.evaluation.trial import PRESET_NAMES, fly
 from groundstation.evaluation.work import WorkError
 
 if TYPE_CHECKING:
     from distributed import Client
 
 CONNECT_S = 10.0
-_PATIENCE_S = 20.0
+_PATIENCE_S = 30.0
 _AHEAD = 3
 _EXTRA = "--cluster needs the extra 'cluster'; install it with: pip install 'groundstation[cluster]'."
 
@@ -42,7 +42,8 @@ def fly_on_cluster(tasks: Sequence[Task], address: str) -> Generator[Result]:
         _send_controllers(client, tasks)
         ahead = iter(tasks)
         lanes = sum(cast("dict[str, int]", client.nthreads()).values())
-        flying = as_completed([_submit(client, task) for task in itertools.islice(ahead, _AHEAD * lanes)])
+        first = [_submit(client, task) for task in itertools.islice(ahead, _AHEAD * lanes)]
+        flying = as_completed(first, loop=client.loop)
         for future in flying:
             result: Result = future.result()
             for task in itertools.islice(ahead, 1):
@@ -64,7 +65,8 @@ def _connected(address: str) -> Client:
             "address, as in tcp://HOST:8786."
         )
     # What it would log, of connections that end, is told in our own words.
-    logging.getLogger("distributed").setLevel(logging.CRITICAL)
+    for logger in ("distributed", "distributed.client"):
+        logging.getLogger(logger).setLevel(logging.CRITICAL)
     client = Client(address, timeout=CONNECT_S, set_as_default=False)
     if why := _unfit(client):
         client.close()
@@ -102,7 +104,7 @@ def _version() -> str:
 
 def _send_controllers(client: Client, tasks: Sequence[Task]) -> None:
     """Send the workers the files that the users' own controllers are in."""
-    for spec in {task.case.controller for task in tasks} - {*PRESETS}:
+    for spec in {task.case.controller for task in tasks} - {*PRESET_NAMES}:
         found = importlib.util.find_spec(spec.partition(":")[0])
         if found is not None and found.origin is not None and found.parent == "":
             client.upload_file(found.origin)

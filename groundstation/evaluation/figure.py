@@ -44,11 +44,12 @@ def draw(path: Path, results: Sequence[Result]) -> None:
     names = ["completed", *(metric.name for metric in METRICS)]
     height = -(-len(names) // _COLUMNS)
     with mpl.rc_context({"svg.fonttype": "none", "svg.hashsalt": "groundstation", "font.size": 9}):
-        figure = Figure(figsize=(3.2 * _COLUMNS, 2.6 * height), layout="constrained")
+        figure = Figure(figsize=(3.2 * _COLUMNS, 2.6 * height))
+        figure.subplots_adjust(0.04, 0.15, 0.99, 0.89, wspace=0.25, hspace=0.55)
         for panel, name in zip(figure.subplots(height, _COLUMNS).flat, names, strict=True):
             _panel(panel, name, flights, along)
         handles, words = figure.axes[0].get_legend_handles_labels()
-        figure.legend(handles, words, loc="outside lower center", ncols=min(len(words), 5), frameon=False)
+        figure.legend(handles, words, loc="lower center", ncols=min(len(words), 5), frameon=False)
         figure.suptitle(f"{len(results)} flights; mean over seeds, bars: 95 % confidence")
         figure.savefig(path, metadata={"Date": None} if path.suffix == ".svg" else None)
 

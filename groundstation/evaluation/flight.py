@@ -17,12 +17,12 @@ from groundstation.evaluation.hands import Hand
 from groundstation.evaluation.local_site import LocalSite, handle_at
 from groundstation.evaluation.remote_site import STEP_S, RemoteSite
 from groundstation.evaluation.sample import Observer, Sample
-from groundstation.messages import Preset
-from groundstation.pilot.choices import Choices
+from groundstation.pilot.chooser import beginning
 from groundstation.pilot.controller import Controller
 from groundstation.pilot.mapping import RateMapping
 from groundstation.pilot.pilot import Pilot
 from groundstation.pilot.surroundings import Surroundings
+from groundstation.training.mission import Fence
 from sim.channel import IDEAL, Conditions
 from sim.scenario import Scenario
 from sim.simulator import Simulator, build
@@ -41,6 +41,7 @@ class Setup(NamedTuple):
         up, down: What the channel does, to the vehicle and from it.
         seed: Of all that is random: air, estimate, channel.
         controller: Another than the paper's.
+        fence: Where the hand may take the vehicle.
     """
 
     scenario: Scenario
@@ -51,6 +52,7 @@ class Setup(NamedTuple):
     down: Conditions = IDEAL
     seed: int = 0
     controller: Controller | None = None
+    fence: Fence | None = None
 
 
 # Makes the hand that fits a mapping and a handle.
@@ -81,14 +83,14 @@ class VirtualFlight:
         link = Link(setup.up, setup.down, setup.seed)
         self._remote = RemoteSite(self.vehicle, link, settings.rates.telemetry)
         self._remote.take_off(setup.altitude)
-        pilot = Pilot(settings, device, known(self.vehicle, setup.scenario), setup.controller)
+        pilot = Pilot(settings, device, known(self.vehicle, setup), setup.controller)
         self.local = LocalSite(
             pilot=pilot,
             hand=hand(RateMapping(settings.mapping, device.workspace), device),
             link=link,
             device=device,
             settings=settings,
-            choices=Choices(preset=Preset[settings.control.preset.upper()]),
+            choices=beginning(settings).choices,
             start_t=self.vehicle.t,
         )
         self._observers = observers
@@ -134,8 +136,9 @@ class VirtualFlight:
             observer(sample)
 
 
-def known(vehicle: Simulator, scenario: Scenario) -> Surroundings:
+def known(vehicle: Simulator, setup: Setup) -> Surroundings:
     """Return what the pilot may know of a simulated vehicle and its world."""
     airframe = vehicle.airframe
+    scenario = setup.scenario
     chi = airframe.chi if scenario.vehicle.model == "dynamic" else None
-    return Surroundings(scenario.obstacle, airframe.radius, chi)
+    return Surroundings(scenario.obstacle, airframe.radius, chi, setup.fence)

@@ -14,11 +14,15 @@ from groundstation.config import Settings
 from groundstation.errors import InputError
 from groundstation.evaluation.axes import Axes
 from groundstation.evaluation.case import Case, Task
-from groundstation.evaluation.trial import PRESETS, scenario_of
+from groundstation.evaluation.trial import PRESET_NAMES, scenario_of
+from groundstation.messages import Preset
 from groundstation.pilot.guest import load_controller
+from groundstation.pilot.presets import PRESETS
 from groundstation.training.mission import Mission, find_mission, load_mission
 from sim.scenario import ScenarioError
 from sim.simulator import build
+
+OFF = "off"
 
 
 def tasks(axes: Axes, settings: Settings) -> list[Task]:
@@ -29,9 +33,11 @@ def tasks(axes: Axes, settings: Settings) -> list[Task]:
     """
     missions = _missions(axes)
     sources = {spec: _source(spec, settings) for spec in axes.controllers}
+    # A preset without a guard is the same flight whatever the guard would be.
+    cases = dict.fromkeys(_cases(axes, missions, axes.guards or (settings.shield.guard,)))
     return [
         Task(case, missions[case.mission], _settings(settings, case), sources[case.controller])
-        for case in _cases(axes, missions, axes.guards or (settings.shield.guard,))
+        for case in cases
     ]
 
 
@@ -50,7 +56,7 @@ def _cases(axes: Axes, missions: dict[str, Mission], guards: tuple[str, ...]) ->
         vehicle = missions[name].vehicle
         yield Case(
             controller=controller,
-            guard=guard,
+            guard=guard if _guarded(controller) else OFF,
             mission=name,
             delay=delay,
             jitter=jitter,
@@ -62,6 +68,11 @@ def _cases(axes: Axes, missions: dict[str, Mission], guards: tuple[str, ...]) ->
             airframe=vehicle.airframe,
             model=vehicle.model,
         )
+
+
+def _guarded(controller: str) -> bool:
+    """Say whether a controller flies with a guard; the user's own do as the preset in the settings has it."""
+    return controller not in PRESET_NAMES or PRESETS[Preset[controller.upper()]].guard
 
 
 def _missions(axes: Axes) -> dict[str, Mission]:
@@ -96,14 +107,14 @@ def _mission(name: str, axes: Axes) -> Mission:
 def _settings(settings: Settings, case: Case) -> Settings:
     """Put the case's preset and guard into the settings."""
     replace = msgspec.structs.replace
-    if case.controller in PRESETS:
+    if case.controller in PRESET_NAMES:
         settings = replace(settings, control=replace(settings.control, preset=case.controller))
     return replace(settings, shield=replace(settings.shield, guard=case.guard))
 
 
 def _source(spec: str, settings: Settings) -> str:
     """Try to make a controller, and return a fingerprint of its file, so that a changed one is flown anew."""
-    if spec in PRESETS:
+    if spec in PRESET_NAMES:
         return ""
     load_controller(spec, settings)
     found = importlib.util.find_spec(spec.partition(":")[0])

@@ -8,9 +8,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-# Two-sided, 95 %: of the normal distribution, and of Student's with one to four degrees of freedom.
+# Two-sided, 95 %: of the normal distribution, and of Student's with one to six degrees of freedom.
 _Z = 1.959963984540054
-_FEW = (12.7062, 4.3027, 3.1824, 2.7764)
+_FEW = (12.7062, 4.3027, 3.1824, 2.7764, 2.5706, 2.4469)
 
 
 class Interval(NamedTuple):
@@ -61,7 +61,7 @@ def mean(values: Sequence[float]) -> Interval:
 def student(freedom: int) -> float:
     """Return the quantile t with P(|T| > t) = 0.05 at `freedom` degrees, right to three digits.
 
-    From five degrees on by the expansion about the normal quantile (Abramowitz and Stegun 26.7.5).
+    From seven degrees on by the expansion about the normal quantile (Abramowitz and Stegun 26.7.5).
     """
     if freedom <= len(_FEW):
         return _FEW[freedom - 1]

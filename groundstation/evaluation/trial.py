@@ -26,7 +26,7 @@ from sim.people import PEOPLE, accustomed
 from sim.scenario import Scenario, Wind
 
 CALM, AS_IN_MISSION = "calm", "mission"
-PRESETS = tuple(preset.name.lower() for preset in Preset)
+PRESET_NAMES = tuple(preset.name.lower() for preset in Preset)
 # After the time limit of the mission nobody waits for the landing longer than this, s.
 _LANDING_S = 30.0
 
@@ -72,11 +72,14 @@ def setup(task: Task) -> Setup:
         scenario_of(mission, wind_of(case, mission.wind)),
         altitude=mission.takeoff_altitude_m,
         settings=task.settings,
-        controller=None if case.controller in PRESETS else load_controller(case.controller, task.settings),
+        controller=None
+        if case.controller in PRESET_NAMES
+        else load_controller(case.controller, task.settings),
         rate=case.rate,
         up=channel,
         down=channel,
         seed=case.seed,
+        fence=mission.fence,
     )
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Hashable, Sequence
 
 from groundstation.evaluation.case import Result
@@ -46,10 +47,12 @@ def comparison(results: Sequence[Result], width: int) -> str:
 
 
 def labels(found: Sequence[Subject]) -> dict[Subject, str]:
-    """Return what to call each subject: its controller, with its guard where that tells them apart."""
-    guards = {subject.guard for subject in found}
+    """Return what to call each subject: its controller, with its guard where it has flown with several."""
+    often = Counter(subject.controller for subject in found)
     return {
-        subject: subject.controller if len(guards) == 1 else f"{subject.controller}, {subject.guard}"
+        subject: subject.controller
+        if often[subject.controller] == 1
+        else f"{subject.controller}, {subject.guard}"
         for subject in found
     }
 

@@ -21,6 +21,7 @@ from typing import NamedTuple
 from drivers.device import ZERO3, Vector3
 from drivers.vectors import within
 from groundstation import config
+from groundstation.frames import body_from_world
 from groundstation.messages import Cue
 from groundstation.pilot.nearby import Near
 from groundstation.pilot.presets import Weights
@@ -37,11 +38,6 @@ class CueForces(NamedTuple):
     mismatch: Vector3 = ZERO3
     guard: Vector3 = ZERO3
     damping: Vector3 = ZERO3
-
-    def total(self) -> Vector3:
-        """Return the sum of those in the world."""
-        a, b, c, d = self.position, self.environment, self.mismatch, self.guard
-        return a[0] + b[0] + c[0] + d[0], a[1] + b[1] + c[1] + d[1], a[2] + b[2] + c[2] + d[2]
 
 
 class Felt(NamedTuple):
@@ -98,6 +94,20 @@ class Feedback:
         if on & _DAMPING and weights.damping:
             damping = scaled(felt.velocity, -weights.damping * self._damping)
         return CueForces(position, environment, mismatch, guard, damping)
+
+
+def hand_force(cues: CueForces, turn: float, limit: float) -> Vector3:
+    """Return the force to render, handle frame, N, no stronger than the device can.
+
+    Args:
+        cues: The parts.
+        turn: Angle from the world's axes to the handle's, as in the mapping, rad.
+        limit: Largest norm, N; a stronger force is shortened and keeps its direction.
+    """
+    a, b, c, d, (u, v, w) = cues
+    total = (a[0] + b[0] + c[0] + d[0], a[1] + b[1] + c[1] + d[1], a[2] + b[2] + c[2] + d[2])
+    x, y, z = body_from_world(total, turn)
+    return within((x + u, y + v, z + w), limit)
 
 
 def scaled(vector: Vector3, factor: float) -> Vector3:

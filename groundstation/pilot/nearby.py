@@ -12,6 +12,7 @@ from typing import NamedTuple
 from drivers.device import Vector3
 from groundstation import config
 from groundstation.pilot.surroundings import Surroundings
+from groundstation.training.mission import Fence
 from sim.environment.world import Solid, World
 
 # Candidates are looked up anew when the vehicle has moved so far, m.
@@ -48,13 +49,15 @@ class Neighbourhood:
 
     Args:
         surroundings: Obstacles and the vehicle's size.
-        shield: Floor, ceiling, fence.
+        shield: Floor, ceiling, fence where the mission has no fence.
     """
 
     def __init__(self, surroundings: Surroundings, shield: config.Shield) -> None:
         self._solids = World(surroundings.obstacles).solids
         self._radius = surroundings.radius
-        self._shield = shield
+        # A mission's fence stands in place of the settings'.
+        fence = surroundings.fence or Fence(shield.fence, shield.ceiling, shield.floor)
+        self._fence, self._ceiling, self._floor = fence.radius, fence.ceiling, fence.floor
 
     def look(
         self, candidates: Candidates, point: Vector3, seen: tuple[Vector3, ...], reach: float
@@ -95,14 +98,13 @@ class Neighbourhood:
     def _bounds(self, found: list[Near], point: Vector3, reach: float) -> None:
         """Add the bounds of the space to fly in. They hold for the vehicle's middle, the fence for its hull."""
         x, y, z = point
-        shield = self._shield
-        if z - shield.floor < reach:
-            found.append(Near(z - shield.floor, (0.0, 0.0, 1.0), "floor", solid=False))
-        if shield.ceiling and shield.ceiling - z < reach:
-            found.append(Near(shield.ceiling - z, (0.0, 0.0, -1.0), "ceiling", solid=False))
-        if shield.fence:
+        if z - self._floor < reach:
+            found.append(Near(z - self._floor, (0.0, 0.0, 1.0), "floor", solid=False))
+        if self._ceiling and self._ceiling - z < reach:
+            found.append(Near(self._ceiling - z, (0.0, 0.0, -1.0), "ceiling", solid=False))
+        if self._fence:
             away = hypot(x, y)
-            gap = shield.fence - away - self._radius
+            gap = self._fence - away - self._radius
             if gap < reach and away > 0.0:
                 found.append(Near(gap, (-x / away, -y / away, 0.0), "fence", solid=False))
 

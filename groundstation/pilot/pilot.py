@@ -10,9 +10,9 @@ from math import isfinite
 from typing import Any, NamedTuple
 
 from drivers.device import ZERO3, DeviceInfo, Vector3
-from drivers.vectors import slewed, within
+from drivers.vectors import slewed
 from groundstation.config import Settings
-from groundstation.frames import Vector4, body_from_world
+from groundstation.frames import Vector4
 from groundstation.messages import MappingMode, Phase
 from groundstation.pilot.command import Commanded, Commander, Commanding, Terms
 from groundstation.pilot.controller import (
@@ -24,7 +24,7 @@ from groundstation.pilot.controller import (
     position_error,
     world_rates,
 )
-from groundstation.pilot.feedback import CueForces, Feedback, Felt, scaled
+from groundstation.pilot.feedback import CueForces, Feedback, Felt, hand_force, scaled
 from groundstation.pilot.forecast import Forecast, Forecaster, noted
 from groundstation.pilot.guest import ControllerError
 from groundstation.pilot.inputs import Inputs
@@ -40,6 +40,8 @@ from groundstation.pilot.surroundings import NOTHING_KNOWN, Surroundings
 
 # A force that must go is gone after this, whatever the device's limit: safely within 100 ms.
 FADE_S = 0.08
+# No vehicle is further from where it was armed, m, nor flies or turns faster, m/s and rad/s.
+_FURTHEST, _FASTEST = 1e6, 100.0
 
 
 class Memory(NamedTuple):
@@ -204,11 +206,13 @@ class Pilot:
     def _fault(self, inputs: Inputs) -> str:
         """Return in words why nothing can be flown on these inputs, or ""."""
         hand, (position, velocity) = inputs.hand, inputs.vehicle
-        # What is not finite stays so in a sum; what is too large to add is not believed either.
+        # What is not finite stays so in a sum.
         if not isfinite(sum(hand.position) + sum(hand.velocity) + hand.yaw + inputs.dt):
             return "the handle gave a number that is not finite"
-        if not isfinite(sum(position) + sum(velocity)):
-            return "the vehicle gave a number that is not finite"
+        # Comparisons with what is not a number are false.
+        far, fast = max(map(abs, position)), max(map(abs, velocity))
+        if not (isfinite(sum(position) + sum(velocity)) and far <= _FURTHEST and fast <= _FASTEST):
+            return "the vehicle gave a number that cannot be"
         if inputs.phase is Phase.ENGAGED and not inputs.state_age <= self._settings.safety.state_stale_s:
             return f"the vehicle's position is {inputs.state_age:.1f} s old"
         return ""
@@ -287,9 +291,7 @@ class Pilot:
         if not inputs.state_age <= settings.safety.force_stale_s:
             return 0.0, self._faded(force, dt)
         presence = min(1.0, presence + dt / settings.limits.force_ramp_s)
-        x, y, z = body_from_world(cues.total(), self._references.by_rate.turn(vehicle_yaw))
-        u, v, w = cues.damping
-        wanted = within((x + u, y + v, z + w), self._force_limit)
+        wanted = hand_force(cues, self._references.by_rate.turn(vehicle_yaw), self._force_limit)
         return presence, slewed(force, scaled(wanted, presence), settings.limits.force_slew * dt)
 
     def _held(self, port: Port, wanted: Vector3, inputs: Inputs) -> Port:

@@ -171,7 +171,8 @@ class Servo:
                 self._bus.event(
                     Severity.INFO,
                     f"In {mode.name.lower()} mode {info.name} is passive at {info.rate:.0f} Hz up to "
-                    f"control.stiffness = [{x:.3g}, {y:.3g}, {z:.3g}], control.damping = {used.damping:.3g}: these are used.",
+                    f"control.stiffness = [{x:.3g}, {y:.3g}, {z:.3g}], control.damping = {used.damping:.3g}: "
+                    "these are used.",
                 )
 
     def _look(self, now: float, handle: HandleState | None) -> tuple[HandleState, Conditions]:

@@ -128,9 +128,9 @@ class Barrier:
         blown = -(nx * px + ny * py + nz * pz) * lag
         if blown > 0.0:
             bound -= blown
-        closing = -(nx * x + ny * y + nz * z)
-        if closing > bound:
-            bound -= _AGAINST * (closing - bound)
+        too_fast = -(nx * x + ny * y + nz * z) - max(bound, 0.0)
+        if too_fast > 0.0:
+            bound -= _AGAINST * too_fast
         size = sqrt(a * a + b * b + d * d)
         return (a / size, b / size, d / size), -bound / size
 

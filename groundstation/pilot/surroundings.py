@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from groundstation.run import Run
+from groundstation.training.mission import Fence
 from sim.airframe import load_airframe
 from sim.models.dynamic import Chi
 from sim.scenario import Obstacle
@@ -20,11 +21,13 @@ class Surroundings(NamedTuple):
         obstacles: Known ones, world.
         radius: Of a sphere around the vehicle, m.
         chi: The vehicle's velocity response where it is known: then it can be compensated.
+        fence: Where the hand may take the vehicle; the settings' bounds where there is none.
     """
 
     obstacles: tuple[Obstacle, ...] = ()
     radius: float = USUAL_RADIUS
     chi: Chi | None = None
+    fence: Fence | None = None
 
 
 NOTHING_KNOWN = Surroundings()
@@ -39,14 +42,14 @@ def surroundings_of(run: Run) -> Surroundings:
     Raises:
         ScenarioError: The airframe cannot be used.
     """
-    mission = run.mission
-    obstacles = mission.obstacle if mission else ()
+    mission, known = run.mission, NOTHING_KNOWN
+    if mission:
+        known = known._replace(obstacles=mission.obstacle, fence=mission.fence)
     if run.simulated and mission:
         airframe = load_airframe(mission.vehicle.airframe)
-        return Surroundings(
-            obstacles, airframe.radius, airframe.chi if mission.vehicle.model == "dynamic" else None
-        )
-    if run.simulated or not run.settings.control.airframe:
-        return Surroundings(obstacles)
-    airframe = load_airframe(run.settings.control.airframe)
-    return Surroundings(obstacles, airframe.radius, airframe.chi)
+        answers = mission.vehicle.model == "dynamic"
+    elif run.settings.control.airframe and not run.simulated:
+        airframe, answers = load_airframe(run.settings.control.airframe), True
+    else:
+        return known
+    return known._replace(radius=airframe.radius, chi=airframe.chi if answers else None)

@@ -27,8 +27,6 @@ _TRAILS: Overrides = {
 _AXIS = rrb.TimeAxis(link=rrb.components.LinkAxis.LinkToGlobal)
 # The velocities share their colours: one legend is enough.
 _FIRST = "Forward velocity"
-_DELAY_TERMS = (schema.RECKONED.path, schema.PHASE_MARGIN.path, schema.SHARES.path)
-_FEEL_LANES = (lanes.MAPPING, lanes.PRESET, lanes.GUARD, lanes.COMPENSATION)
 _BACKGROUND: palette.Colour = (20, 23, 28)
 _GRID = (120, 128, 140, 90)
 
@@ -158,31 +156,29 @@ def _hand() -> rrb.Grid:
 def _feel() -> rrb.Vertical:
     plots = rrb.Grid(
         _plot("Force by cue, N", schema.CUE_SIZES.path),
-        _plot("Force on the hand, N", schema.HANDLE_FORCE.path),
-        _guarded("Forward velocity asked for, guarded, flown, m/s", 0),
-        _guarded("Left velocity asked for, guarded, flown, m/s", 1),
-        _plot("K₁ in effect, 1/s", schema.K1.path),
-        _plot("Delay, s; margin, rad; shares of gains and speed", *_DELAY_TERMS),
         _plot("Energy of the hand's port, J", schema.HANDLE_ENERGY.path),
-        _plot("Seen by the vehicle's sensors, m", schema.RANGES.path),
+        _guarded("Forward, m/s: asked for (orange), guarded (red), flown (blue)", 0),
+        _guarded("Left, m/s: asked for (orange), guarded (red), flown (blue)", 1),
+        _plot("K₁ in effect, 1/s, and phase margin, rad", schema.K1.path, schema.PHASE_MARGIN.path),
+        _plot("Round trip, s, and what it leaves, share", schema.RECKONED.path, schema.SHARES.path),
         grid_columns=2,
     )
-    states = _states("Handle, preset, guard, compensation", *_FEEL_LANES)
-    return rrb.Vertical(plots, states, row_shares=[4, 1], name="Feel")
+    states = _states("Guard, handle, preset", lanes.GUARD, lanes.MAPPING, lanes.PRESET)
+    return rrb.Vertical(plots, states, row_shares=[7, 2], name="Feel")
 
 
 def _guarded(name: str, axis: int) -> rrb.TimeSeriesView:
     """Show one axis of v_ref and v_safe, which is the guard's doing, and what the vehicle makes of it."""
-    visible = [place == axis for place in range(4)]
+    visible = [place == axis for place in range(len(schema.V_REF.parts))]
     overrides: Overrides = {
-        quantity.path: rr.SeriesLines(names=[word] * 4, colors=[colour] * 4, visible_series=visible)
-        for quantity, word, colour in (
-            (schema.V_REF, "v_ref", palette.REFERENCE),
-            (schema.V_SAFE, "v_safe", palette.VERMILION),
+        quantity.path: rr.SeriesLines(
+            names=list(quantity.parts), colors=[colour] * len(visible), visible_series=visible
         )
+        for quantity, colour in ((schema.V_REF, palette.REFERENCE), (schema.V_SAFE, palette.VERMILION))
     }
     paths = (schema.V_REF.path, schema.V_SAFE.path, schema.EXECUTED[axis].path)
-    return _plot(name, *paths, overrides=overrides)
+    # What is hidden would stand in the legend all the same.
+    return _plot(name, *paths, legend=False, overrides=overrides)
 
 
 def _machinery() -> rrb.Vertical:
@@ -191,9 +187,13 @@ def _machinery() -> rrb.Vertical:
         _plot("Servo's longest reads, writes, steps, s", schema.SERVO_TIME.path),
         _plot("Frames lost, share", schema.LOSS.path),
         _plot("Setpoint frames at the gate", schema.GATE.path),
+        _plot("Seen by the vehicle's sensors, m", schema.RANGES.path),
+        _plot("Push that the model does not know, m/s²", schema.PUSH.path),
         _plot("Battery, share", schema.BATTERY.path),
         _plot("Time between heartbeats, s", f"{schema.PROCESSES}/**"),
         grid_columns=2,
     )
-    states = _states("Device and setpoint stream", lanes.DEVICE_STATE, lanes.STREAM)
-    return rrb.Vertical(plots, states, row_shares=[4, 1], name="Machinery")
+    states = _states(
+        "Device, setpoint stream, compensation", lanes.DEVICE_STATE, lanes.STREAM, lanes.COMPENSATION
+    )
+    return rrb.Vertical(plots, states, row_shares=[7, 2], name="Machinery")

@@ -86,9 +86,8 @@ def _sizes(*vectors: str) -> Callable[[Rows], Numbers]:
 
 
 def _ranges(rows: Rows) -> Numbers:
-    """Return the ring's least, NaN where nothing of it is known; below, above, and the ring's limit."""
-    least = np.fmin.reduce(rows["ring"], axis=1)
-    return np.column_stack((least, rows["below"], rows["above"], rows["limit"]))
+    """Return the ring's least, NaN where nothing of it is known; below and above."""
+    return np.column_stack((np.fmin.reduce(rows["ring"], axis=1), rows["below"], rows["above"]))
 
 
 _NUMBERS: tuple[tuple[Topic[Any], tuple[tuple[Quantity, Callable[[Rows], Numbers]], ...]], ...] = (
@@ -150,6 +149,7 @@ _NUMBERS: tuple[tuple[Topic[Any], tuple[tuple[Quantity, Callable[[Rows], Numbers
         (
             (schema.RING, _fields("ring")),
             (schema.RANGES, _ranges),
+            (schema.RANGE_LIMIT, _fields("limit")),
         ),
     ),
     (

@@ -164,11 +164,12 @@ RING = Quantity(
 )
 RANGES = Quantity(
     "/ranges/nearest",
-    ("around", "below", "above", "limit"),
+    ("around", "below", "above"),
     "m",
     "10 Hz",
-    "Least of the ring; straight down and up; how far the ring sees",
+    "Least of the ring; straight down and up",
 )
+RANGE_LIMIT = Quantity("/ranges/limit", ("limit",), "m", "10 Hz", "How far the ring sees")
 
 STATE_AGE = Quantity(
     "/delay/state_age", ("vehicle's state",), "s", "50 Hz", "Age of the state the pilot used, d₁"
@@ -213,7 +214,7 @@ QUANTITIES: tuple[Quantity, ...] = (
     PREDICTED, PREDICTED_VELOCITY, STOP, PUSH,
     *REFERENCES, *EXECUTED,
     POSITION, VELOCITY, ATTITUDE, BOOT_TIME, BATTERY, VOLTAGE, HEALTH_BITS,
-    RING, RANGES,
+    RING, RANGES, RANGE_LIMIT,
     STATE_AGE, HANDLE_AGE, ROUND_TRIP, RECKONED, SILENCE,
     LOSS, GATE,
     SERVO_RATE, SERVO_LATE, SERVO_TIME, SERVO_TICKS,

@@ -19,6 +19,8 @@ _COLOURS: dict[str, tuple[palette.Colour, ...]] = {
     schema.HANDLE_AGE.path: (palette.GREEN,),
     schema.SILENCE.path: (palette.PURPLE,),
     schema.RECKONED.path: (palette.YELLOW,),
+    schema.SHARES.path: (palette.GREEN, palette.PURPLE),
+    schema.PHASE_MARGIN.path: (palette.YELLOW,),
     schema.TARGET_DISTANCE.path: (palette.GREEN,),
     schema.CUE_SIZES.path: (palette.ORANGE, palette.SKY, palette.GREEN, palette.VERMILION, palette.GREY),
 }

@@ -72,7 +72,7 @@ def strongest_near(series: FlightSeries, cue: str = "position") -> Push:
     strength = lengths(series.cues[cue])
     found = Push(0.0, "")
     for near in approaches(series, NEAR_M):
-        during = (series.t >= near.start) & (series.t < near.end)
+        during = (series.t >= near.start) & (series.t <= near.end)
         found = max(found, Push(float(strength[during].max()), near.name))
     return found
 

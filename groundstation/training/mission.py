@@ -69,6 +69,24 @@ class Criteria(Struct, frozen=True, forbid_unknown_fields=True):
     max_collisions: Annotated[int, Meta(ge=0)] = 0
 
 
+class Fence(Struct, frozen=True, forbid_unknown_fields=True):
+    """Where the hand may take the vehicle: the shield keeps it there, in place of the settings' own bounds.
+
+    Attributes:
+        radius: Largest distance of the hull from the origin in the plane, m; 0 for none.
+        ceiling: Highest altitude of the vehicle's middle, m; 0 for none.
+        floor: Lowest, m.
+    """
+
+    radius: NonNegative = 0.0
+    ceiling: NonNegative = 0.0
+    floor: NonNegative = 0.5
+
+    def __post_init__(self) -> None:
+        if self.ceiling and self.ceiling <= self.floor:
+            raise ValueError("the ceiling is not above the floor; raise one or lower the other")
+
+
 class Mission(Struct, frozen=True, forbid_unknown_fields=True):
     """A mission file.
 
@@ -80,6 +98,7 @@ class Mission(Struct, frozen=True, forbid_unknown_fields=True):
         takeoff_altitude_m: Where take-off ends, above the pad.
         route: Points the reference hand flies through before the target, world, m.
         target: Where it leads, or none: then the flight only takes off, holds and lands.
+        fence: Where the hand may take the vehicle.
         vehicle, wind, obstacle, pad, contact, battery, estimate: The world, see `sim.scenario`. Gates are there to be
             flown through, each at least once.
     """
@@ -92,6 +111,7 @@ class Mission(Struct, frozen=True, forbid_unknown_fields=True):
     route: tuple[Point, ...] = ()
     target: Target | None = None
     criteria: Criteria = Criteria()
+    fence: Fence | None = None
     vehicle: VehicleChoice = VehicleChoice()
     wind: Wind = Wind()
     obstacle: tuple[Obstacle, ...] = ()

@@ -1,4 +1,7 @@
-"""What the operator can ask for: one table for keys, footer, palette, dialogs and help."""
+"""What the operator can ask for: one table for keys, footer, palette, dialogs and help.
+
+What can be chosen besides, how the handle leads and what it feels, is in `groundstation.tui.choices`.
+"""
 
 from __future__ import annotations
 
@@ -51,8 +54,13 @@ class Act:
 
     @property
     def keys(self) -> tuple[str, ...]:
-        """The keys that do it: without shift and with it, unless it is one that takes shift."""
-        return (self.key,) if self.key.isupper() else (self.key, self.key.upper())
+        """The keys that do it."""
+        return with_shift(self.key)
+
+
+def with_shift(key: str) -> tuple[str, ...]:
+    """Return a key without shift and with it, unless it is one that takes shift or knows none."""
+    return (key,) if key == key.upper() else (key, key.upper())
 
 
 def in_air(snapshot: Snapshot) -> bool:
@@ -68,6 +76,13 @@ def armed(snapshot: Snapshot) -> bool:
 def coupled(snapshot: Snapshot) -> bool:
     """Say whether the hand was last known to be coupled to the vehicle, or about to be."""
     return snapshot.pilot is not None and snapshot.pilot.phase != Phase.DISENGAGED
+
+
+def pilot_silent(snapshot: Snapshot) -> str:
+    """Say that nobody is there to obey what is the pilot's business, or ""."""
+    pilot = snapshot.pilot
+    silent = pilot is None or snapshot.t - pilot.t > PILOT_STALE_S
+    return "the pilot process does not answer" if silent else ""
 
 
 def _connected(snapshot: Snapshot) -> bool:
@@ -95,9 +110,8 @@ def _cannot_take_off(snapshot: Snapshot) -> str:
 
 
 def _cannot_engage(snapshot: Snapshot) -> str:
-    pilot = snapshot.pilot
-    if pilot is None or snapshot.t - pilot.t > PILOT_STALE_S:
-        return "the pilot process does not answer"
+    if silent := pilot_silent(snapshot):
+        return silent
     if coupled(snapshot):
         return "the hand is engaged already"
     if not in_air(snapshot):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
-from groundstation.messages import Phase, Severity
+from groundstation.messages import MappingMode, Phase, Severity
 from groundstation.training.director import Stage
 from groundstation.tui import judge
 from groundstation.tui.acts import armed, in_air
@@ -121,16 +121,37 @@ def next_step(frame: Frame) -> str:
 
 
 def _engaged_hint(frame: Frame) -> str:
-    pilot, mission = frame.pilot, frame.run.mission
-    stick = "Space lets go of the stick" if frame.stick is not None else "The handle's centre is standstill"
-    if pilot is not None and pilot.on_leash:
-        return "On the leash: the vehicle does not keep up, the force shows where it is."
+    if hampered := _hampered(frame):
+        return hampered
+    mission, still = frame.run.mission, _standstill(frame)
     progress, target = frame.snapshot.progress, distance_to_target(frame)
     if progress is not None and words(progress.stage) == Stage.RETURNING.value and math.isfinite(target):
-        return f"Engaged. The target is held: mission flown. {stick}, L lands."
+        return f"Engaged. The target is held: mission flown. {still}, L lands."
     if mission is not None and mission.target is not None and math.isfinite(target):
-        return f"Engaged. Target {quantity(target, 'm', 1)} away. {stick}, X releases."
-    return f"Engaged. {stick}, X releases, H holds."
+        return f"Engaged. Target {quantity(target, 'm', 1)} away. {still}, X releases."
+    return f"Engaged. {still}, X releases, H holds."
+
+
+def _hampered(frame: Frame) -> str:
+    """Say why the vehicle does not do what the hand does, or ""."""
+    pilot = frame.pilot
+    if pilot is None:
+        return ""
+    if pilot.clutched:
+        return "Clutch: the handle moves nothing. C takes hold again."
+    if pilot.waiting:
+        return "Centre the handle to take hold."
+    if frame.guarded_by:
+        return f"Guard: it keeps the vehicle away from {frame.guarded_by}."
+    return "On the leash: the vehicle does not keep up, the force shows where it is." if pilot.on_leash else ""
+
+
+def _standstill(frame: Frame) -> str:
+    """Say how the vehicle comes to stand still."""
+    pilot = frame.pilot
+    if pilot is not None and pilot.mapping == MappingMode.POSITION:
+        return "It stands where the handle does; C clutches to reach on"
+    return "Space lets go of the stick" if frame.stick is not None else "The handle's centre is standstill"
 
 
 def distance_to_target(frame: Frame) -> float:

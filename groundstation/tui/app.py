@@ -20,11 +20,13 @@ from textual.screen import Screen
 
 from groundstation.bus import Bus
 from groundstation.console import Console, Snapshot
-from groundstation.messages import CommandKind, FlightMode, Severity
+from groundstation.messages import CommandKind, FlightMode, Preset, Severity
 from groundstation.run import Run
 from groundstation.training.follower import MissionFollower
 from groundstation.tui.acts import ACTS, BY_NAME, Act, Ask, coupled, in_air
+from groundstation.tui.choices import CHOICES, CHOICES_BY_NAME, PRESETS_EXPLAINED, Choice, Wishes
 from groundstation.tui.frame import Frame, Reader, Supervisor, workspace
+from groundstation.tui.guarding import GuardWatch
 from groundstation.tui.hand import Hand, StickSender
 from groundstation.tui.hangup import HangupWatch
 from groundstation.tui.keepalive import Keepalive
@@ -73,6 +75,7 @@ class FlightApp(App[int]):
         self._flight_run, self._reader, self._supervisor = run, console, supervisor
         self._stick, self._clock = stick, clock
         self._answers = Answers()
+        self._wishes, self._guard = Wishes(), GuardWatch()
         self._track, self._history = Track(), History()
         self._snapshot = console.snapshot()
         self._started = self._snapshot.t
@@ -121,7 +124,8 @@ class FlightApp(App[int]):
             started=self._started,
             states=self._supervisor.states(),
             stick=self.hand.share if self._stick is not None else None,
-            hindrances={act.name: act.hindrance(snapshot) for act in ACTS},
+            hindrances={each.name: each.hindrance(snapshot) for each in (*ACTS, *CHOICES)},
+            guarded_by=self._guard.look(snapshot),
             notes=tuple(self._answers.notes),
             track=self._track,
             history=self._history,
@@ -139,13 +143,14 @@ class FlightApp(App[int]):
 
     def on_app_blur(self) -> None:
         """The operator looks elsewhere: let go of the stick."""
-        self._flight.action_centre()
+        self._flight.let_go()
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
         """Grey what cannot be done now."""
-        if action == "act" and parameters:
-            act = BY_NAME.get(str(parameters[0]))
-            return True if act is None or not act.hindrance(self._snapshot) else None
+        table = {"act": BY_NAME, "choose": CHOICES_BY_NAME}.get(action)
+        if table is not None and parameters:
+            asked = table.get(str(parameters[0]))
+            return True if asked is None or not asked.hindrance(self._snapshot) else None
         return super().check_action(action, parameters)
 
     def action_act(self, name: str) -> None:
@@ -157,17 +162,33 @@ class FlightApp(App[int]):
             which = "the simulated" if self._flight_run.simulated else "the REAL"
             self._ask(f"{act.label} {which} vehicle?", act.explains, act.key, lambda: self._command(act))
 
-    def _hindered(self, act: Act) -> bool:
-        """Say why an act cannot be done, if so."""
-        hindrance = act.hindrance(self._snapshot)
+    def action_choose(self, name: str) -> None:
+        """Make one of the operator's choices: go on from what is in effect."""
+        choice, pilot = CHOICES_BY_NAME[name], self._snapshot.pilot
+        if not self._hindered(choice) and pilot is not None:
+            self._send(choice.kind, choice.after(self._wishes.present(choice.kind, pilot)))
+
+    def _choose_preset(self, preset: Preset) -> None:
+        if not self._hindered(CHOICES_BY_NAME["preset"]):
+            self._send(CommandKind.PRESET, preset)
+
+    def _hindered(self, asked: Act | Choice) -> bool:
+        """Say why an act or a choice is not possible, if so."""
+        hindrance = asked.hindrance(self._snapshot)
         if hindrance:
-            self.notify(f"{act.label}: {hindrance}.", timeout=3.0, markup=False)
+            self.notify(f"{asked.label}: {hindrance}.", timeout=3.0, markup=False)
         return bool(hindrance)
 
     def _command(self, act: Act) -> None:
         """Send a command, unless it has become impossible while it was asked about."""
         if not self._hindered(act):
-            self._answers.sent(self._reader.command(act.kind), act.kind, self._snapshot.t)
+            self._send(act.kind)
+
+    def _send(self, kind: CommandKind, value: int = 0) -> None:
+        """Send a command and watch for its answer."""
+        now = self._snapshot.t
+        self._wishes.sent(kind, value, now)
+        self._answers.sent(self._reader.command(kind, value), kind, now)
 
     def _ask(self, question: str, consequence: str, key: str, then: Callable[[], None]) -> None:
         def answered(yes: bool | None) -> None:
@@ -205,17 +226,23 @@ class FlightApp(App[int]):
         self.exit(0)
 
     def get_system_commands(self, screen: Screen[object]) -> Iterable[SystemCommand]:
-        """List all acts by name; those that cannot be done now say why."""
+        """List all acts and choices by name; those that are not possible now say why."""
         del screen
         for act in ACTS:
-            hindrance = act.hindrance(self._snapshot)
-            words = f"Not now: {hindrance}." if hindrance else act.explains
-            yield SystemCommand(
-                f"{act.label} ({act.key})", words, lambda name=act.name: self.action_act(name)
-            )
+            yield self._listed(act, lambda name=act.name: self.action_act(name))
+        for choice in CHOICES:
+            yield self._listed(choice, lambda name=choice.name: self.action_choose(name))
+        for preset, words in PRESETS_EXPLAINED.items():
+            title = f"Preset: {preset.name.lower()}"
+            yield SystemCommand(title, words, lambda preset=preset: self._choose_preset(preset))
         yield SystemCommand("Centre the stick (space)", "All axes at once.", self._flight.action_centre)
         yield SystemCommand("Help (?)", "All keys.", self.action_help)
         yield SystemCommand("Quit (q)", "Asks first while the vehicle is in the air.", self.action_quit)
+
+    def _listed(self, asked: Act | Choice, then: Callable[[], None]) -> SystemCommand:
+        hindrance = asked.hindrance(self._snapshot)
+        words = f"Not now: {hindrance}." if hindrance else asked.explains
+        return SystemCommand(f"{asked.label} ({asked.key})", words, then)
 
 
 def run_screen(

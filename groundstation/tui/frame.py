@@ -29,8 +29,8 @@ class Reader(Protocol):
         """Return the newest of everything."""
         ...
 
-    def command(self, kind: CommandKind) -> int:
-        """Send a command and return its number."""
+    def command(self, kind: CommandKind, value: int = 0) -> int:
+        """Send a command with its value and return its number."""
         ...
 
 
@@ -54,7 +54,8 @@ class Frame:
         started: Time of the first snapshot, s.
         states: A word for each process.
         stick: Deflection asked for with the on-screen stick, or None where another device is in use.
-        hindrances: Why each act cannot be done now, by name; "" where it can.
+        hindrances: Why each act and choice cannot be made now, by name; "" where it can.
+        guarded_by: What the guard keeps away from, now or a moment ago, or "".
         notes: What the screen itself has to say, oldest first.
     """
 
@@ -64,6 +65,7 @@ class Frame:
     states: Mapping[str, str]
     stick: Share4 | None
     hindrances: Mapping[str, str]
+    guarded_by: str
     notes: Sequence[Note]
     track: Track
     history: History

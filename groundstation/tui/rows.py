@@ -114,3 +114,20 @@ def bar(value: float | None, limit: float, width: int, tone: Tone, mark: float |
         place = half + round(max(-1.0, min(1.0, mark / limit)) * half)
         cells[place], tones[place] = "┃", Tone.HAND
     return joined(cells, tones)
+
+
+def gauge(value: float | None, limit: float, width: int, tone: Tone) -> Row:
+    """Return a bar from the left for what has no sign, half a cell fine; what is not known is an empty track.
+
+    Args:
+        value: From 0 on.
+        limit: At full deflection, where the bar turns into a warning.
+        width: Cells.
+        tone: Of the bar.
+    """
+    width = max(width, 0)
+    known = value is not None and math.isfinite(value) and limit > 0
+    share = max(0.0, min(value / limit, 1.0)) if known and value is not None else 0.0
+    whole, half = divmod(round(2 * share * width), 2)
+    filled = "█" * whole + "▌" * half
+    return [(filled, Tone.WARN if share >= 1.0 else tone), ("─" * (width - whole - half), Tone.GRID)]

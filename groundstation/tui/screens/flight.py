@@ -12,6 +12,7 @@ from textual.containers import Horizontal, Vertical
 from textual.screen import Screen
 
 from groundstation.tui.acts import ACTS
+from groundstation.tui.choices import CHOICES
 from groundstation.tui.frame import Frame
 from groundstation.tui.hand import Hand
 from groundstation.tui.widgets.altitude import Altitude
@@ -44,12 +45,17 @@ STEPS: tuple[tuple[str, int, int, str], ...] = (
 
 def _bindings() -> list[BindingType]:
     acts = [Binding(",".join(act.keys), f"app.act('{act.name}')", act.label, show=False) for act in ACTS]
+    choices = [
+        Binding(",".join(choice.keys), f"app.choose('{choice.name}')", choice.label, show=False)
+        for choice in CHOICES
+    ]
     steps = [
         Binding(key, f"step({axis}, {direction})", f"Stick {words}", show=False)
         for key, axis, direction, words in STEPS
     ]
     return [
         *acts,
+        *choices,
         *steps,
         Binding("space,0", "centre", "Stick to the centre", show=False),
         Binding("question_mark,f1", "app.help", "Help", show=False),
@@ -114,12 +120,16 @@ class FlightScreen(Screen[None]):
             self._hand.step(axis, direction)
 
     def action_centre(self) -> None:
-        """Let go of the on-screen stick."""
+        """Put the on-screen stick into its centre."""
+        self._stick.centre()
+
+    def let_go(self) -> None:
+        """Let go of the on-screen stick, so that it moves the vehicle no more."""
         self._stick.let_go()
 
     def on_screen_suspend(self) -> None:
         """A dialog comes up: no hand moves the vehicle meanwhile."""
-        self.action_centre()
+        self.let_go()
 
     def on_key(self, event: events.Key) -> None:
         """Say why a key does nothing now."""
@@ -130,9 +140,9 @@ class FlightScreen(Screen[None]):
 
 
 def reason_for(key: str, hindrances: Mapping[str, str]) -> str:
-    """Return why the act of a key cannot be done, or "" where the key is no act's."""
-    for act in ACTS:
-        if key in act.keys:
-            hindrance = hindrances.get(act.name, "")
-            return f"{act.label}: {hindrance}." if hindrance else ""
+    """Return why what a key asks for is not possible, or "" where it asks for nothing."""
+    for asked in (*ACTS, *CHOICES):
+        if key in asked.keys:
+            hindrance = hindrances.get(asked.name, "")
+            return f"{asked.label}: {hindrance}." if hindrance else ""
     return ""

@@ -47,6 +47,11 @@ class Instrument(Widget, can_focus=False):
         del frame
         return 0.0
 
+    def footnote(self, frame: Frame) -> str:
+        """Return what stands in the lower border while the data is fresh."""
+        del frame
+        return ""
+
     def show(self, frame: Frame) -> None:
         """Take a new frame, and paint what changed if it is this instrument's turn."""
         self._frame = frame
@@ -57,7 +62,7 @@ class Instrument(Widget, can_focus=False):
 
     def _paint(self, frame: Frame) -> None:
         width, height = self.size
-        self._tell_age(self.data_age(frame))
+        self._note(frame)
         rows = self.draw(frame, width, height)
         rows.extend([] for _ in range(height - len(rows)))
         if len(rows) != len(self._rows):
@@ -69,12 +74,15 @@ class Instrument(Widget, can_focus=False):
         if changed:
             self.refresh(*changed)
 
-    def _tell_age(self, age: float) -> None:
+    def _note(self, frame: Frame) -> None:
+        """Write into the lower border how old the data is, or the footnote."""
+        age = self.data_age(frame)
         stale = age > self.STALE_S
         if stale != self.has_class(_STALE_CLASS):
             self.set_class(stale, _STALE_CLASS)
             self._rows = []
-        words = "" if not stale else f"▲ {span_of_time(age)} old" if math.isfinite(age) else "no data yet"
+        old = f"▲ {span_of_time(age)} old" if math.isfinite(age) else "no data yet"
+        words = old if stale else self.footnote(frame)
         if words != (self.border_subtitle or ""):
             self.border_subtitle = words
 

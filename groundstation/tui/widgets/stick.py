@@ -1,7 +1,8 @@
 """The stick: two pads as on a transmitter, drawn from the handle, moved with the mouse where it is ours.
 
 Left pad: up and down, turning. Right pad: forward and back, sideways. Pressing and dragging moves the handle,
-letting go centres it; whatever takes the mouse or the eyes away centres it, too.
+letting go centres it; whatever takes the mouse or the eyes away centres it, too. In position mode the vehicle would
+follow it back: there it stays where it is, and only its turning, a rate in both modes, ends.
 """
 
 from __future__ import annotations
@@ -10,6 +11,7 @@ import math
 
 from textual import events
 
+from groundstation.messages import MappingMode, Phase
 from groundstation.tui.canvas import Canvas
 from groundstation.tui.frame import Frame
 from groundstation.tui.hand import CENTRED, Hand, Share4
@@ -94,11 +96,20 @@ class Stick(Instrument):
         self.let_go()
 
     def let_go(self) -> None:
-        """Centre the handle and give the mouse back."""
+        """Give the mouse back, and have the handle move the vehicle no more: centred, or in position mode left there."""
         self._held = None
         if self._hand is not None:
-            self._hand.centre()
+            if self._frame is not None and stays(self._frame):
+                self._hand.place(YAW, 0.0)
+            else:
+                self._hand.centre()
         self.release_mouse()
+
+    def centre(self) -> None:
+        """Put the handle into its centre, wherever that takes the vehicle, and give the mouse back."""
+        self.let_go()
+        if self._hand is not None:
+            self._hand.centre()
 
     def _content_point(self, event: events.MouseEvent) -> tuple[float, float]:
         """Return where the pointer is within the content, in cells, fractional where the terminal tells."""
@@ -183,6 +194,14 @@ def pads(width: int, height: int) -> tuple[Pad, Pad]:
     columns = 2 * rows
     start = max((width - 2 * columns - _GAP) // 2, 0)
     return Pad(start, columns, rows), Pad(start + columns + _GAP, columns, rows)
+
+
+def stays(frame: Frame) -> bool:
+    """Say whether the handle stays where it is let go: in position mode its centre is a place, not a standstill."""
+    pilot = frame.pilot
+    if pilot is None or pilot.phase != Phase.ENGAGED or pilot.clutched:
+        return False
+    return pilot.mapping == MappingMode.POSITION
 
 
 def shares(frame: Frame) -> Share4:

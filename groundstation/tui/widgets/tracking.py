@@ -1,10 +1,11 @@
-"""How far the vehicle is from the hand: the error p̃ = p_h − p on each axis."""
+"""How far the vehicle is from the hand: the error p̃ = p_h − p on each axis, and the gain that closes it."""
 
 from __future__ import annotations
 
 import math
 
 from groundstation.frames import heading_from_yaw
+from groundstation.messages import PilotState
 from groundstation.tui.frame import Frame
 from groundstation.tui.rows import Row, bar, quantity
 from groundstation.tui.theme import Tone
@@ -15,7 +16,7 @@ _WITH_POSITIONS = 50
 
 
 class Tracking(Instrument):
-    """The error as bars against the leash, and with room the hand's and the vehicle's position."""
+    """The error as bars against the leash; with room the hand's and the vehicle's position, and K₁ by axis."""
 
     BORDER_TITLE = "position error  p̃ = p_h − p"
     EVERY = 3
@@ -24,6 +25,16 @@ class Tracking(Instrument):
     def data_age(self, frame: Frame) -> float:
         """Age of the controller's record."""
         return frame.age(frame.snapshot.pilot)
+
+    def footnote(self, frame: Frame) -> str:
+        """Return the gain in effect, the phase margin it leaves, and for which delay."""
+        pilot, width = frame.pilot, self.size.width
+        if pilot is None or not all(map(math.isfinite, (pilot.k1[0], pilot.phase_margin, pilot.delay))):
+            return ""
+        margin = f"margin {quantity(math.degrees(pilot.phase_margin), '°', 0)}".replace(" °", "°")
+        if width < _WITH_POSITIONS:
+            return f"K₁ {_gain(pilot, frame.run.settings.control.k1[0])}, {margin}"
+        return f"K₁ {_gain(pilot, frame.run.settings.control.k1[0])}, {margin} at {quantity(1000 * pilot.delay, 'ms', 0)} delay"
 
     def draw(self, frame: Frame, width: int, height: int) -> list[Row]:
         """Draw a row an axis."""

@@ -23,6 +23,7 @@ BENCHES = {
     "passivity": "energy at the haptic port with delay and loss",
     "pilot_step": "cost and memory of a tick of the pilot with everything on",
     "stability": "how well the drone follows, and whether anything swings at 0.7 s round trip",
+    "evaluate": "how many times as fast as real time flights are evaluated",
     "shield": "full-stick adversaries through obstacle fields, with and without the guard",
 }
 

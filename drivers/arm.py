@@ -52,12 +52,14 @@ class Arm:
         e = x − x_i − f/k and ω = √(k/m), e(t) = (e₀ + (v₀ + ω e₀) t) e^(−ωt). Yaw follows alike, unloaded.
         """
         omega = math.sqrt(self.stiffness / self.mass)
+        grown, decay = omega * dt, math.exp(-omega * dt)
+        law = ((1.0 + grown) * decay, dt * decay, -omega * grown * decay, (1.0 - grown) * decay)
         (x, y, z), (u, v, w) = state.position, state.velocity
         give = 1.0 / self.stiffness
-        x, u = _settle(x, u, intention[0] + force[0] * give, omega, dt)
-        y, v = _settle(y, v, intention[1] + force[1] * give, omega, dt)
-        z, w = _settle(z, w, intention[2] + force[2] * give, omega, dt)
-        yaw, yaw_rate = _settle(state.yaw, state.yaw_rate, intended_yaw, omega, dt)
+        x, u = _settle(x, u, intention[0] + force[0] * give, law)
+        y, v = _settle(y, v, intention[1] + force[1] * give, law)
+        z, w = _settle(z, w, intention[2] + force[2] * give, law)
+        yaw, yaw_rate = _settle(state.yaw, state.yaw_rate, intended_yaw, law)
         return ArmState((x, y, z), (u, v, w), yaw, yaw_rate)
 
     def energy(self, state: ArmState, intention: Vector3) -> float:
@@ -81,8 +83,9 @@ def stop(state: ArmState, workspace: float) -> ArmState:
     )
 
 
-def _settle(place: float, rate: float, rest: float, omega: float, dt: float) -> tuple[float, float]:
-    decay = math.exp(-omega * dt)
+def _settle(
+    place: float, rate: float, rest: float, law: tuple[float, float, float, float]
+) -> tuple[float, float]:
+    """Return place and rate after a step: `law` is the matrix that takes e and v through it, row by row."""
     error = place - rest
-    pull = rate + omega * error
-    return rest + (error + pull * dt) * decay, (rate - omega * pull * dt) * decay
+    return rest + law[0] * error + law[1] * rate, law[2] * error + law[3] * rate

@@ -22,6 +22,7 @@ from groundstation.messages import (
     MissionProgress,
     Phase,
     PilotState,
+    Preset,
     ServoReport,
     Setpoint,
     Severity,
@@ -29,8 +30,10 @@ from groundstation.messages import (
     VehicleState,
     VehicleStatus,
 )
+from groundstation.pilot.choices import ALL_CUES
 from groundstation.run import Run
 from groundstation.training.mission import MISSIONS_FOLDER, load_mission
+from sim.environment.world import World
 
 START = 1000.0
 STEP_S = 0.02
@@ -39,7 +42,8 @@ STIFFNESS = 4.0
 GAIN = 1.2
 LAG_S = 0.45
 WIND = (0.25, -0.45, 0.05)
-NOTHING = Snapshot(START, None, None, None, None, None, None, None, None, (), ())
+NEAR_M = 1.2
+NOTHING = Snapshot(START, None, None, None, None, None, None, None, None, None, (), ())
 
 
 def canned_run(*, simulated: bool = True, settings: Settings | None = None, mission: bool = True) -> Run:
@@ -62,13 +66,19 @@ def canned_run(*, simulated: bool = True, settings: Settings | None = None, miss
 class CannedFlight:
     """The flight; `advance` goes on, `snapshot` tells where it is.
 
-    The hand leads along the mission's route, the vehicle follows with a lag in a wind.
+    The hand leads along the mission's route, the vehicle follows with a lag in a wind; near an obstacle the guard acts.
+
+    Args:
+        run: With the mission.
+        delay: Round trip, s.
     """
 
-    def __init__(self, run: Run) -> None:
+    def __init__(self, run: Run, delay: float = 0.0123) -> None:
         assert run.mission is not None
         assert run.mission.target is not None
         self._points = [*run.mission.route, run.mission.target.position]
+        self._world = World(run.mission.obstacle)
+        self._delay = delay
         self._climb_to = run.mission.takeoff_altitude_m
         self.elapsed = 0.0
         self._p = [0.0, 0.0, 0.0, 0.15]
@@ -123,6 +133,7 @@ class CannedFlight:
             vehicle=VehicleState(
                 t=t - 0.012, position=tuple(self._p), velocity=tuple(self._v), boot_t=self.elapsed, valid=1
             ),
+            ranges=None,
             status=self._status(t),
             servo=ServoReport(
                 t=t - 0.3, rate=1000.0, late_p50=24e-6, late_p99=118e-6, late_max=0.41e-3,
@@ -169,17 +180,50 @@ class CannedFlight:
         )
 
     def _pilot(self, t: float, error: list[float]) -> PilotState:
-        return PilotState(
+        asked = self._asked(error)
+        state = PilotState(
             t=t - 0.008,
             p_h=tuple(self._p_h),
             p_h_rate=tuple(self._rate),
             error=tuple(error),
-            v_ref=self._asked(error),
-            force=tuple(-STIFFNESS * value for value in error[:3]),
+            v_ref=asked,
+            v_safe=asked,
+            v_c=asked,
             state_age=0.012,
             phase=Phase.ENGAGED if self.engaged else Phase.DISENGAGED,
             centred=not self.engaged,
+            preset=Preset.ASSISTED,
+            cues=ALL_CUES,
+            k1=(math.nan,) * 4,
+            phase_margin=math.nan,
+            delay=math.nan,
+            gain_share=1.0,
+            speed_share=1.0,
         )
+        if self.engaged:
+            self._lead(state, error)
+        return state
+
+    def _lead(self, state: PilotState, error: list[float]) -> None:
+        """Fill in what there is only while the hand leads: forecast, gains, cues."""
+        ahead = [self._p[i] + self._delay * self._v[i] for i in range(4)]
+        state.predicted[:] = ahead
+        state.predicted_velocity[:] = self._v[:3]
+        brake = LAG_S + math.hypot(*self._v[:3]) / 6.0
+        state.stop[:] = [ahead[i] + brake * self._v[i] for i in range(3)]
+        poor = max(0.0, min(1.0, (self._delay - 0.2) / 0.6))
+        state.delay, state.phase_margin = self._delay, math.radians(45.0 + 12.0 * (1.0 - poor))
+        state.k1[:] = [GAIN - 0.8 * poor] * 3 + [1.0 - 0.6 * poor]
+        state.gain_share, state.speed_share = 1.0 - 0.6 * poor, 1.0 - 0.7 * poor
+        state.compensated = 1
+        state.force[:] = [-STIFFNESS * value for value in error[:3]]
+        state.damping[:] = [-0.02 * value for value in self._rate[:3]]
+        near = self._world.nearest((self._p[0], self._p[1], self._p[2]))
+        if near.distance < NEAR_M:
+            push = NEAR_M - near.distance
+            state.environment[:] = [2.0 * push * value for value in near.normal]
+            state.guard[:] = [push * value for value in near.normal]
+            state.guarding, state.guarded_by = 1, near.name.encode()
 
     def _status(self, t: float) -> VehicleStatus:
         flying = self.elapsed > 1.0
@@ -188,7 +232,7 @@ class CannedFlight:
             t=t - 0.05,
             heard_t=t - 0.018,
             loss=0.004,
-            rtt=0.0123,
+            rtt=self._delay,
             battery=0.87 - 0.002 * self.elapsed,
             voltage=15.9,
             sent=int(50 * max(self.elapsed - ENGAGED_S, 0)),
@@ -223,6 +267,7 @@ class CannedReader:
     def __init__(self, snapshot: Snapshot) -> None:
         self.shown = snapshot
         self.commands: list[CommandKind] = []
+        self.values: list[int] = []
         self.answers: list[CommandAnswer] = []
 
     def snapshot(self) -> Snapshot:
@@ -230,9 +275,10 @@ class CannedReader:
         answers, self.answers = tuple(self.answers), []
         return replace(self.shown, answers=answers)
 
-    def command(self, kind: CommandKind) -> int:
+    def command(self, kind: CommandKind, value: int = 0) -> int:
         """Take note of a command."""
         self.commands.append(kind)
+        self.values.append(value)
         return len(self.commands)
 
 

@@ -2,26 +2,38 @@
 
 import csv
 import json
+import os
 import subprocess
 import sys
 import time
+from pathlib import Path
 
 import pytest
-from evaluation_support import STEP_TOML, evaluate
+from evaluation_support import STEP_TOML, task
 
 from groundstation.cli import main
+from groundstation.errors import InputError
+from groundstation.evaluation.cluster import fly_on_cluster
 
 PATIENCE_S = 90.0
-# Leaves a mark where it is made, so that one sees who flew. The workers do not have this file.
+# Shows who flew, and kills the first worker that flies with it. The workers do not have this file.
 CONTROLLER = """\
-import os
+import os, signal
 from pathlib import Path
 from groundstation.pilot.controller import PaperController
 
-class Marked(PaperController):
+FOLDER = Path({folder!r})
+
+class Deadly(PaperController):
     def __init__(self, settings):
         super().__init__()
-        Path({marks!r}, str(os.getpid())).touch()
+        if "EVALUATION_WORKER" in os.environ:
+            (FOLDER / str(os.getpid())).touch()
+            try:
+                (FOLDER / "to kill").unlink()
+            except FileNotFoundError:
+                return
+            os.kill(os.getpid(), signal.SIGKILL)
 """
 
 
@@ -32,6 +44,7 @@ def started(folder, *command):
             cwd=folder,
             stdout=log,
             stderr=subprocess.STDOUT,
+            env=os.environ | {"EVALUATION_WORKER": "1"},
         )
 
 
@@ -56,17 +69,16 @@ def cluster(tmp_path):
         process.wait()
 
 
-def test_two_workers_fly_what_one_machine_would_and_one_may_die(tmp_path, cluster):
+def test_two_workers_fly_what_one_machine_would_and_one_may_die(tmp_path, cluster, monkeypatch, capsys):
     folder, address, processes = cluster
-    alone = evaluate(tmp_path, "--seeds", "1", "--cluster", address)
-    _, told = alone.communicate(timeout=PATIENCE_S)
-    assert alone.returncode == 2
-    assert f"--cluster {address}: the scheduler has no workers; start some with 'dask worker ADDRESS" in told
-    assert told.count("\n") == 1
-
-    marks = tmp_path / "marks"
-    marks.mkdir()
-    (tmp_path / "marked_law.py").write_text(CONTROLLER.format(marks=str(marks)))
+    with pytest.raises(
+        InputError, match=f"--cluster {address}: the scheduler has no workers; start some with"
+    ):
+        next(fly_on_cluster([task()], address))
+    flew = tmp_path / "flew"
+    flew.mkdir()
+    (flew / "to kill").touch()
+    (tmp_path / "deadly_law.py").write_text(CONTROLLER.format(folder=str(flew)))
     workers = [worker(folder), worker(folder)]
     processes += workers
     until = time.monotonic() + PATIENCE_S
@@ -74,30 +86,33 @@ def test_two_workers_fly_what_one_machine_would_and_one_may_die(tmp_path, cluste
         assert time.monotonic() < until, (folder / "worker.log").read_text()
         time.sleep(0.05)
 
-    given = ("--controller", "assisted,marked_law:Marked", "--seeds", "4", "--out", "c.csv")
-    running = evaluate(tmp_path, *given, "--cluster", address)
-    flew = {str(each.pid) for each in workers}
-    while not flew <= {mark.name for mark in marks.iterdir()}:
-        assert running.poll() is None, running.communicate()
-        assert time.monotonic() < until
-        time.sleep(0.02)
-    workers[0].kill()
-    out, told = running.communicate(timeout=PATIENCE_S)
-    assert running.returncode == 0, told
+    monkeypatch.chdir(tmp_path)
+    given = [
+        "--mission",
+        "step.toml",
+        "--rate",
+        "250",
+        "--seeds",
+        "4",
+        "--controller",
+        "assisted,deadly_law:Deadly",
+    ]
+    Path("step.toml").write_text(STEP_TOML)
+    with pytest.raises(SystemExit) as ended:
+        main(["evaluate", *given, "--out", "c.csv", "--cluster", address])
+    out, told = capsys.readouterr()
+    assert ended.value.code == 0, told
     assert "Traceback" not in told
-    assert "marked_law:Marked − assisted" in out
+    assert "deadly_law:Deadly − assisted" in out
+    assert {int(file.name) for file in flew.iterdir()} == {each.pid for each in workers}
+    assert sorted(str(each.poll()) for each in workers) == ["-9", "None"]
     with (tmp_path / "c.csv").open(newline="") as file:
         rows = list(csv.DictReader(file))
     assert len(rows) == 8
     assert {row["completed"] for row in rows} == {"True"}
 
 
-def test_an_address_where_nothing_answers_is_told(tmp_path, monkeypatch, capsys):
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "step.toml").write_text(STEP_TOML)
-    with pytest.raises(SystemExit) as ended:
-        main(["evaluate", "--mission", "step.toml", "--seeds", "1", "--cluster", "no-such-scheme://x:1"])
-    assert ended.value.code == 2
-    told = capsys.readouterr().err
-    assert "no Dask scheduler answers there" in told
-    assert told.count("\n") == 1
+def test_an_address_where_nothing_answers_is_told():
+    with pytest.raises(InputError, match="no-such-scheme://x:1: no Dask scheduler answers there") as told:
+        next(fly_on_cluster([task()], "no-such-scheme://x:1"))
+    assert "\n" not in str(told.value)

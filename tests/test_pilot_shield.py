@@ -83,8 +83,11 @@ def test_what_is_near_is_the_same_wherever_one_comes_from(path) -> None:
     world = World(OBSTACLES)
     for point in path:
         candidates, near = neighbourhood.look(candidates, point, (), 2.0)
-        expected = {s.name: s.distance(*point) - 0.4 for s in world.solids if s.distance(*point) < 2.4}
-        assert {thing.name: thing.gap for thing in near if thing.solid} == pytest.approx(expected)
+        gaps = {solid.name: solid.distance(*point) - 0.4 for solid in world.solids}
+        expected = {name: gap for name, gap in gaps.items() if gap < 2.0}
+        found = {thing.name: thing.gap for thing in near if thing.solid}
+        assert {name: gap for name, gap in found.items() if gap < 2.0} == pytest.approx(expected, abs=0.005)
+        assert found == pytest.approx({name: gaps[name] for name in found}, abs=0.005)
         if expected:
             assert nearest(near).gap == pytest.approx(min(expected.values()))
 

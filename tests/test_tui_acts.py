@@ -9,6 +9,7 @@ from canned_flight import NOTHING, START, CannedFlight, canned_run
 
 from groundstation.messages import CommandAnswer, CommandKind, Event, Severity
 from groundstation.tui.acts import ACTS, BY_NAME
+from groundstation.tui.choices import CHOICES
 from groundstation.tui.notes import ANSWER_S, Answers, Note, from_event, merged, words
 from groundstation.tui.screens.flight import STEPS
 
@@ -67,9 +68,12 @@ def test_without_a_device_nothing_engages():
     assert "no haptic device" in BY_NAME["engage"].hindrance(replace(snapshot, device=None))
 
 
-def test_every_command_has_one_act_and_no_two_share_a_key():
-    assert {act.kind for act in ACTS} == set(CommandKind)
-    keys = [act.key for act in ACTS] + [key for key, *_ in STEPS]
+def test_every_command_is_an_act_or_a_choice_and_no_two_share_a_key():
+    acts, choices = {act.kind for act in ACTS}, {choice.kind for choice in CHOICES}
+    assert acts | choices == set(CommandKind)
+    assert not acts & choices
+    keys = [key for asked in (*ACTS, *CHOICES) for key in asked.keys]
+    keys += [key for key, *_ in STEPS] + ["0", "q", "Q"]
     assert len(keys) == len(set(keys))
 
 

@@ -11,7 +11,7 @@ from canned_flight import canned_run
 from hypothesis import given
 from hypothesis import strategies as st
 
-from groundstation.tui import scene
+from groundstation.tui import moving, scene
 from groundstation.tui.canvas import Canvas
 from groundstation.tui.theme import Tone
 from sim.environment.shapes import extent
@@ -107,38 +107,6 @@ def test_obstacles_beside_the_vehicle_are_drawn_solid_others_as_outlines():
     assert Tone.BESIDE not in tones(high)
     assert Tone.OBSTACLE in tones(high)
     assert {Tone.TARGET, Tone.ROUTE} <= tones(high)
-
-
-@pytest.mark.parametrize(
-    ("yaw", "axis", "side"), [(0.0, 0, 1), (math.pi, 0, -1), (math.pi / 2, 1, -1), (-math.pi / 2, 1, 1)]
-)
-def test_the_arrowhead_points_where_the_vehicle_heads(yaw, axis, side):
-    view = scene.View(0.0, 0.0, 0.1, 120, 120)
-    canvas = Canvas(60, 30)
-    scene.draw_vehicle(canvas, view, 0.0, 0.0, yaw)
-    rows, columns = np.nonzero(canvas._dots)
-    reach = side * ((columns, rows)[axis] - 59.5)
-    assert reach.max() > 1.3 * -reach.min()
-    assert tones(canvas) == {Tone.VEHICLE}
-
-
-def test_a_vehicle_that_is_nowhere_is_not_drawn():
-    view = scene.framing(None, [], 80, 80)
-    canvas = Canvas(40, 20)
-    scene.draw_vehicle(canvas, view, math.nan, 0.0, 0.0)
-    scene.draw_hand(canvas, view, (0.0, math.nan), (1.0, 1.0), 1.5, taut=False)
-    scene.draw_trail(canvas, view, np.empty((0, 2)))
-    assert tones(canvas) == set()
-
-
-def test_the_leash_is_drawn_taut_as_a_warning():
-    view = scene.framing(None, [], 80, 80)
-    slack, taut = Canvas(40, 20), Canvas(40, 20)
-    scene.draw_hand(slack, view, (0.0, 0.0), (1.0, 0.0), 1.5, taut=False)
-    scene.draw_hand(taut, view, (0.0, 0.0), (1.5, 0.0), 1.5, taut=True)
-    assert Tone.HAND in tones(slack)
-    assert Tone.WARN not in tones(slack)
-    assert tones(taut) == {Tone.WARN}
 
 
 def test_the_scale_is_as_long_as_it_says():

@@ -19,7 +19,8 @@ def stream():
 
 @pytest.fixture
 def flying(stream):
-    stream.step(seen(10.0))
+    assert stream.step(seen(9.7)) == (Act.NOTHING, "")
+    assert stream.step(seen(10.0)) == (Act.START, "")
     stream.accepted(10.1)
     stream.step(seen(10.5, mode=FlightMode.OFFBOARD, mode_t=10.4))
     assert stream.state is Stream.FLYING
@@ -32,12 +33,27 @@ def test_nothing_starts_without_an_active_fresh_setpoint(stream):
         assert stream.state is Stream.IDLE
 
 
-def test_an_active_fresh_setpoint_starts_it(stream):
-    assert stream.step(seen()) == (Act.START, "")
-    assert stream.state is Stream.STARTING
+def test_setpoints_stream_for_a_moment_before_offboard_is_asked_for_and_it_is_asked_once(stream):
+    acts = []
+    for n in range(40):
+        act, _ = stream.step(seen(10.0 + 0.01 * n))
+        assert stream.state is Stream.STARTING
+        acts.append(act)
+    assert acts.index(Act.START) == pytest.approx(20, abs=1)
+    assert acts.count(Act.START) == 1
+    assert set(acts) == {Act.NOTHING, Act.START}
+
+
+def test_letting_go_before_offboard_was_asked_for_holds(stream):
+    stream.step(seen(10.0))
+    assert stream.step(seen(10.1, active=False)) == (Act.CLOSE_AND_HOLD, "")
+    assert stream.step(seen(10.2, active=False)) == (Act.NOTHING, "")
+    assert stream.step(seen(10.3)) == (Act.NOTHING, "")
+    assert stream.step(seen(10.6)) == (Act.START, "")
 
 
 def test_a_heartbeat_from_before_the_acknowledgement_proves_nothing(stream):
+    stream.step(seen(9.7))
     stream.step(seen(10.0))
     stream.step(seen(10.05, mode=FlightMode.OFFBOARD, mode_t=9.9))
     assert stream.state is Stream.STARTING
@@ -50,6 +66,7 @@ def test_a_heartbeat_from_before_the_acknowledgement_proves_nothing(stream):
 
 def test_a_start_that_is_not_confirmed_ends_in_hold(stream):
     stream.step(seen(10.0))
+    stream.step(seen(10.3))
     act, why = stream.step(seen(13.1))
     assert act is Act.CLOSE_AND_HOLD
     assert "did not confirm" in why

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import subprocess
+import tempfile
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -114,12 +115,13 @@ class HeadlessViewer:
         return self._process.poll() is not None
 
     def _answers(self, port: int) -> bool:
-        """Say whether the viewer itself answers: its port is open before it has looked for a driver."""
+        """Say whether the viewer paints: it opens its port, and even answers, before it has found a driver."""
         if not listening(port):
             return False
         try:
             self._client = ViewerClient.connect(f"rerun+http://127.0.0.1:{port}/proxy")
-            self._client.get_state()
+            with tempfile.TemporaryDirectory() as folder:
+                self._client.save_screenshot(str(Path(folder) / "first.png"))
         except (ConnectionError, RuntimeError):
             return False
         return True

@@ -81,6 +81,7 @@ class GroundEnd:
 
     Attributes:
         report: The newest that came, or None.
+        sample: Of it; zeros before.
         heard_t: When, s; minus infinity before.
         round_trip: As measured, s; NaN before the first answer.
         loss: Share of the vehicle's frames lost in the last seconds, 0 to 1.
@@ -93,6 +94,7 @@ class GroundEnd:
         self._asked = 0
         self._next_ask = -math.inf
         self.report: Report | None = None
+        self.sample = VehicleSample()
         self.heard_t = -math.inf
         self.round_trip = math.nan
         self.loss = 0.0
@@ -123,8 +125,8 @@ class GroundEnd:
                 self._trips.answered(_TIMESYNC.unpack(frame)[2], t)
                 continue
             _, _, offboard, armed, x, y, z, yaw, vx, vy, vz, turn = _TELEMETRY.unpack(frame)
-            sample = VehicleSample((x, y, z, yaw), (vx, vy, vz, turn))
-            self.report = Report(sample, bool(offboard), bool(armed))
+            self.sample = VehicleSample((x, y, z, yaw), (vx, vy, vz, turn))
+            self.report = Report(self.sample, bool(offboard), bool(armed))
             self.heard_t = t
 
 

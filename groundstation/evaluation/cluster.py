@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
+import asyncio
 import importlib.util
 import itertools
 import logging
-import subprocess
-import sys
 from collections.abc import Generator, Sequence
 from typing import TYPE_CHECKING, cast
 
@@ -20,7 +19,6 @@ if TYPE_CHECKING:
     from distributed import Client
 
 CONNECT_S = 10.0
-_PATIENCE_S = 30.0
 _AHEAD = 3
 _EXTRA = "--cluster needs the extra 'cluster'; install it with: pip install 'groundstation[cluster]'."
 
@@ -59,14 +57,14 @@ def _connected(address: str) -> Client:
     """Connect, and see that there are workers that can fly."""
     from distributed import Client
 
-    if not _answers(address):
+    # What it would log, of connections that end, is told in our own words.
+    for logger in ("distributed", "distributed.client"):
+        logging.getLogger(logger).setLevel(logging.CRITICAL)
+    if not asyncio.run(_is_scheduler(address)):
         raise InputError(
             f"--cluster {address}: no Dask scheduler answers there; start one with 'dask scheduler' or correct the "
             "address, as in tcp://HOST:8786."
         )
-    # What it would log, of connections that end, is told in our own words.
-    for logger in ("distributed", "distributed.client"):
-        logging.getLogger(logger).setLevel(logging.CRITICAL)
     client = Client(address, timeout=CONNECT_S, set_as_default=False)
     if why := _unfit(client):
         client.close()
@@ -74,16 +72,16 @@ def _connected(address: str) -> Client:
     return client
 
 
-def _answers(address: str) -> bool:
-    """Try the address in another process: a client hangs, or worse, where something else than a scheduler listens."""
-    script = f"import distributed, os; distributed.Client({address!r}, timeout={CONNECT_S}); os._exit(0)"
+async def _is_scheduler(address: str) -> bool:
+    """Ask who is there; a client would wait for ever where something else than a scheduler listens."""
+    from distributed import rpc
+
     try:
-        tried = subprocess.run(
-            [sys.executable, "-c", script], capture_output=True, timeout=_PATIENCE_S, check=False
-        )
-    except subprocess.TimeoutExpired:
+        async with asyncio.timeout(CONNECT_S), rpc(address) as there:
+            told = cast("dict[str, object]", await there.identity())
+            return told["type"] == "Scheduler"
+    except Exception:  # noqa: BLE001 - anything may listen there, and answer anything
         return False
-    return tried.returncode == 0
 
 
 def _unfit(client: Client) -> str:

@@ -79,7 +79,7 @@ def _fly(tasks: Sequence[Task], log: Log, asked: argparse.Namespace) -> tuple[st
 
 
 def _flights(tasks: Sequence[Task], asked: argparse.Namespace) -> Generator[Result]:
-    if asked.cluster:
+    if asked.cluster is not None:
         from groundstation.evaluation.cluster import fly_on_cluster
 
         return fly_on_cluster(tasks, asked.cluster)

@@ -15,9 +15,7 @@ from groundstation.evaluation.hands import CENTRE, Hand
 from groundstation.messages import Phase
 from groundstation.pilot.choices import Choices
 from groundstation.pilot.pilot import Inputs, Memory, Pilot
-from groundstation.pilot.sight import VehicleSample
 
-_NEVER_SEEN = VehicleSample()
 # Of this hand and this handle, always.
 _CUT, _HOMED = False, True
 
@@ -74,7 +72,7 @@ class LocalSite:
         self.coupling = Coupling(settings, device, self.end)
         self.handle = HandleState(ZERO3, ZERO3, 0.0, 0, homed=True, device_time=start_t)
         _, self.outputs = pilot.step(
-            self._memory, Inputs(self._dt, self.coupling.phase, _CUT, self.handle, _NEVER_SEEN, inf)
+            self._memory, Inputs(self._dt, self.coupling.phase, _CUT, self.handle, self.end.sample, inf)
         )
         self.state_age = inf
         self.strongest = self.given = 0.0
@@ -87,7 +85,6 @@ class LocalSite:
         """
         t, dt, end = self.t, self._dt, self.end
         end.listen(t)
-        report = end.report
         self.state_age = age = t - end.heard_t
         place, speed, yaw, _ = state = self._arm_state
         self.handle = handle = HandleState(place, speed, yaw, 0, _HOMED, t)
@@ -95,8 +92,7 @@ class LocalSite:
         if due:
             self._decide(t)
         phase = self.coupling.phase
-        sample = _NEVER_SEEN if report is None else report.sample
-        inputs = Inputs(dt, phase, _CUT, handle, sample, age, end.round_trip, end.loss, self._choices)
+        inputs = Inputs(dt, phase, _CUT, handle, end.sample, age, end.round_trip, end.loss, self._choices)
         self._memory, outputs = self._pilot.step(self._memory, inputs)
         self.outputs = outputs
         if due and phase is not Phase.DISENGAGED:
@@ -115,6 +111,5 @@ class LocalSite:
         """Look at link and coupling, and at the vehicle while it follows the hand."""
         self.end.measure(t)
         self.coupling.update(t, self.handle, self.outputs.fault)
-        report = self.end.report
-        flying = report is not None and self.coupling.phase is Phase.ENGAGED
-        self._wanted = self._hand.decide(t, report.sample) if report and flying else CENTRE
+        engaged = self.coupling.phase is Phase.ENGAGED
+        self._wanted = self._hand.decide(t, self.end.sample) if engaged else CENTRE

@@ -8,6 +8,7 @@ from typing import NamedTuple
 from drivers.device import Vector3
 from groundstation.config import Settings
 from groundstation.frames import Vector4
+from groundstation.messages import Preset
 from groundstation.pilot.compensation import Compensation, lagged
 from groundstation.pilot.forecast import Forecast
 from groundstation.pilot.inputs import Inputs
@@ -30,6 +31,7 @@ class Terms(NamedTuple):
     """Under which a tick is flown.
 
     Attributes:
+        told: What they follow from: round trip, s, loss and preset.
         delay: Round trip, s: measured, or what is assumed until then.
         assistance: The preset's.
         loop: Gains that the delay leaves.
@@ -37,6 +39,7 @@ class Terms(NamedTuple):
         speed: Share of the speeds that link and preset leave, 0 to 1.
     """
 
+    told: tuple[float, float, Preset]
     delay: float
     assistance: Assistance
     loop: Loop
@@ -51,15 +54,11 @@ class Commanding(NamedTuple):
         motion: Of v_c, within limits.
         then: v_c about a round trip ago.
         candidates: What may be near.
-        loop: Gains that the delay leaves, or None at the start.
-        compensated: They are for the compensated response.
     """
 
     motion: SetpointMotion = SetpointMotion()
     then: Vector4 = ZERO4
     candidates: Candidates = Candidates()
-    loop: Loop | None = None
-    compensated: bool = False
 
 
 class Commanded(NamedTuple):
@@ -108,19 +107,19 @@ class Commander:
         self._felt = settings.cues.reach
         self._off = Off()
 
-    def loop(self, before: Commanding, delay: float, assistance: Assistance) -> Loop:
+    def loop(self, before: Terms | None, delay: float, assistance: Assistance) -> Loop:
         """Return the gains that a delay leaves.
 
         Args:
-            before: With those of the tick before.
+            before: Of the tick before, if it was flown.
             delay: Round trip, s.
             assistance: Whether the response is compensated.
         """
         total = delay + _SAMPLING_S
         compensated = self._compensates(assistance)
-        known = before.loop
-        if known and compensated is before.compensated and abs(known.delay - total) < _CHANGED_S:
-            return known
+        same = before is not None and compensated is self._compensates(before.assistance)
+        if before and same and abs(before.loop.delay - total) < _CHANGED_S:
+            return before.loop
         control = self._control
         return loop_for(total, control.k1, control.k3, self._margin, self._lags[compensated])
 
@@ -136,7 +135,7 @@ class Commander:
             inputs: Of the tick.
             terms: Under which it is flown.
         """
-        _, assistance, loop, _, speed = terms
+        _, _, assistance, loop, _, speed = terms
         compensates = self._compensates(assistance)
         guard = self._guards[compensates] if assistance.guard else self._off
         velocity = forecast.velocity
@@ -149,7 +148,7 @@ class Commander:
         motion, meant = self._limiter.step(motion, safe, inputs.dt, speed)
         then = lagged(before.then, meant, loop.delay, inputs.dt)
         setpoint = self._compensated(motion, meant, forecast, loop) if compensates else meant
-        after = Commanding(motion, then, candidates, loop, compensates)
+        after = Commanding(motion, then, candidates)
         return after, Commanded(safe, meant, setpoint, then, by, near, loop, compensates)
 
     def stop(self, forecast: Forecast, *, compensated: bool) -> Vector3:

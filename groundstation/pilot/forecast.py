@@ -49,6 +49,7 @@ class Forecast(NamedTuple):
         sample_t: When the setpoint was sent that acted as the sample was taken, s.
         p: Where the vehicle will be as what is sent now arrives, world, m and rad; yaw is not wrapped.
         v: Its velocities then, vehicle's axes, m/s and rad/s.
+        velocity: The same, world, m/s.
         push: Disturbing acceleration, world, m/s².
         believed: The observer's velocity at the sample, world, m/s.
     """
@@ -59,14 +60,9 @@ class Forecast(NamedTuple):
     sample_t: float = 0.0
     p: Vector4 = ZERO4
     v: Vector4 = ZERO4
+    velocity: Vector3 = ZERO3
     push: Vector3 = ZERO3
     believed: Vector3 = ZERO3
-
-    @property
-    def velocity(self) -> Vector3:
-        """The vehicle's velocity as what is sent now arrives, world, m/s."""
-        c, s = cos(self.p[3]), sin(self.p[3])
-        return c * self.v[0] - s * self.v[1], s * self.v[0] + c * self.v[1], self.v[2]
 
 
 class Forecaster:
@@ -97,7 +93,7 @@ class Forecaster:
         sample_t = t - age - delay
         push, believed = self._observed(before, sample, sample_t)
         p, v = self._through(before.marks, sample, push, sample_t, t)
-        return Forecast(t, before.marks, sample, sample_t, p, v, push, believed)
+        return Forecast(t, before.marks, sample, sample_t, p, v, _in_world(v, p[3]), push, believed)
 
     def _through(
         self, marks: tuple[Mark, ...], sample: VehicleSample, push: Vector3, begin: float, end: float
@@ -179,6 +175,11 @@ def _in_force(marks: tuple[Mark, ...], t: float) -> Vector4:
         if mark.t <= t:
             return mark.setpoint
     return ZERO4
+
+
+def _in_world(v: Vector4, yaw: float) -> Vector3:
+    c, s = cos(yaw), sin(yaw)
+    return c * v[0] - s * v[1], s * v[0] + c * v[1], v[2]
 
 
 def _on_axes(velocity: Vector4, yaw: float) -> Vector4:

@@ -111,27 +111,32 @@ def approach(motion: Motion, target: complex, bounds: Bounds, dt: float, share: 
         dt: s.
         share: 0 to 1.
     """
-    v, a = motion
-    top, most, jerk = bounds
-    target = _shortened(target, top * share)
+    (v, a), (top, most, jerk) = motion, bounds
+    size, allowed = abs(target), top * share
+    if size > allowed:
+        target *= allowed / size
     if v == target and not a:
         return motion
-    gap = target - v - a * (abs(a) / (2.0 * jerk))
+    brake = 0.5 / jerk
+    gap = target - v - a * (abs(a) * brake)
     distance = abs(gap)
     if distance < _THERE:
         return _braked(motion, jerk, dt)
-    faster = _shortened(a + gap * (jerk * dt / distance), most)
+    faster = a + gap * (jerk * dt / distance)
+    size = abs(faster)
+    if size > most:
+        faster *= most / size
     after = v + (a + faster) * (0.5 * dt)
-    reach = after + faster * (abs(faster) / (2.0 * jerk))
+    reach = after + faster * (abs(faster) * brake)
     over = reach - target
     beyond = (over.real * gap.real + over.imag * gap.imag) / distance
     if beyond > 0.0:
         # `reach` grows faster than in proportion to the push, so this share of it never passes.
-        rest = _braked(motion, jerk, dt)
+        rest, rest_a = _braked(motion, jerk, dt)
         part = distance / (distance + beyond)
-        after = rest.velocity + part * (after - rest.velocity)
-        faster = rest.acceleration + part * (faster - rest.acceleration)
-        reach = after + faster * (abs(faster) / (2.0 * jerk))
+        after = rest + part * (after - rest)
+        faster = rest_a + part * (faster - rest_a)
+        reach = after + faster * (abs(faster) * brake)
     safe = abs(after) <= top and abs(reach) <= top and abs(target - reach) <= distance
     return Motion(after, faster) if safe else _braked(motion, jerk, dt)
 

@@ -17,6 +17,9 @@ from sim.environment.world import Solid, World
 
 # Candidates are looked up anew when the vehicle has moved so far, m.
 _MOVED_M = 1.0
+# Within this way, m, everything is as near as it was: a fiftieth of the margin.
+_SAME_M = 0.005
+_FURTHER = 1.1
 _SEEN = "sensor"
 _FAR = (inf, inf, inf)
 
@@ -38,10 +41,23 @@ class Near(NamedTuple):
 
 
 class Candidates(NamedTuple):
-    """All solids with their distance at some place, nearest first, until the vehicle has moved on from there."""
+    """What need not be measured anew at every tick.
+
+    Attributes:
+        at: Where the solids were measured, world, m.
+        solids: All of them with their distance there, nearest first.
+        looked: Where one last looked, m; with what was seen, and how far.
+        seen: See `looked`.
+        reach: See `looked`.
+        near: What was found there.
+    """
 
     at: Vector3 = _FAR
     solids: tuple[tuple[float, Solid], ...] = ()
+    looked: Vector3 = _FAR
+    seen: tuple[Vector3, ...] = ()
+    reach: float = 0.0
+    near: tuple[Near, ...] = ()
 
 
 class Neighbourhood:
@@ -70,13 +86,18 @@ class Neighbourhood:
             seen: Points on obstacles that the vehicle's sensors see, world, m.
             reach: Up to which gap a thing is near, m.
         """
+        known = candidates
+        if dist(point, known.looked) < _SAME_M and reach <= known.reach and seen == known.seen:
+            return known, known.near
         x, y, z = point
-        moved = dist(point, candidates.at)
+        solids, at, moved = known.solids, known.at, dist(point, known.at)
         if moved > _MOVED_M:
-            candidates, moved = self._candidates(point), 0.0
+            solids, at, moved = self._measured(point), point, 0.0
+        # A little further than asked for, so that a speed that grows is no reason to look again.
+        reach = _FURTHER * reach
         within = reach + self._radius
         found: list[Near] = []
-        for before, solid in candidates.solids:
+        for before, solid in solids:
             # No distance changes faster than the vehicle moves; those that follow are further still.
             if before - moved >= within:
                 break
@@ -89,11 +110,12 @@ class Neighbourhood:
                 away = ((x - at[0]) / distance, (y - at[1]) / distance, (z - at[2]) / distance)
                 found.append(Near(distance - self._radius, away, _SEEN, solid=True))
         self._bounds(found, point, reach)
-        return candidates, tuple(found)
+        near = tuple(found)
+        return Candidates(at, solids, point, seen, reach, near), near
 
-    def _candidates(self, point: Vector3) -> Candidates:
+    def _measured(self, point: Vector3) -> tuple[tuple[float, Solid], ...]:
         measured = ((solid.distance(*point), solid) for solid in self._solids)
-        return Candidates(point, tuple(sorted(measured, key=_first)))
+        return tuple(sorted(measured, key=_first))
 
     def _bounds(self, found: list[Near], point: Vector3, reach: float) -> None:
         """Add the bounds of the space to fly in. They hold for the vehicle's middle, the fence for its hull."""
@@ -111,12 +133,12 @@ class Neighbourhood:
 
 def nearest(near: tuple[Near, ...]) -> Near | None:
     """Return the nearest thing that can be run into."""
-    return min((thing for thing in near if thing.solid), key=_gap, default=None)
+    found: Near | None = None
+    for thing in near:
+        if thing.solid and (found is None or thing.gap < found.gap):
+            found = thing
+    return found
 
 
 def _first(measured: tuple[float, Solid]) -> float:
     return measured[0]
-
-
-def _gap(thing: Near) -> float:
-    return thing.gap

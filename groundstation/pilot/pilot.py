@@ -35,7 +35,7 @@ from groundstation.pilot.passivity.gains import Gains, passive_gains
 from groundstation.pilot.passivity.port import Port
 from groundstation.pilot.presets import PRESETS
 from groundstation.pilot.reference import Reference, ReferenceGenerator
-from groundstation.pilot.sight import ZERO4, Sight, look
+from groundstation.pilot.sight import ZERO4, Sight, VehicleSample, look
 from groundstation.pilot.surroundings import NOTHING_KNOWN, Surroundings
 
 # A force that must go is gone after this, whatever the device's limit: safely within 100 ms.
@@ -52,6 +52,7 @@ class Memory(NamedTuple):
         forecast: Of it.
         reference: p_h and ṗ_h.
         state: The controller's own.
+        terms: Under which the last tick was flown.
         commanding: Of guard, limits and compensation.
         presence: Share of the force that is rendered; it grows after engaging.
         port: Account of the haptic port's energy; with the force on the hand.
@@ -62,6 +63,7 @@ class Memory(NamedTuple):
     forecast: Forecast = Forecast()
     reference: Reference = Reference()
     state: Any = None
+    terms: Terms | None = None
     commanding: Commanding = Commanding()
     presence: float = 0.0
     port: Port = Port()
@@ -143,7 +145,7 @@ class Pilot:
         controller: The paper's unless given.
 
     Attributes:
-        gains: Of both mappings as set, or less where the device does not render so much passively.
+        gains: Of each `MappingMode` as set, or less where the device does not render so much passively.
 
     Raises:
         ValueError: A gain is not positive and finite.
@@ -161,10 +163,8 @@ class Pilot:
         self._settings = settings
         self._force_limit = device.force_limit
         self._passivity = passivity_named(settings.control.passivity, device)
-        self.gains: dict[MappingMode, Gains] = {
-            mode: passive_gains(settings, device, mode) for mode in MappingMode
-        }
-        self._feedback = {mode: Feedback(settings.cues, gains.damping) for mode, gains in self.gains.items()}
+        self.gains: tuple[Gains, ...] = tuple(passive_gains(settings, device, mode) for mode in MappingMode)
+        self._feedback = tuple(Feedback(settings.cues, gains.damping) for gains in self.gains)
         self._references = ReferenceGenerator(settings.mapping, settings.limits, device.workspace)
         self._forecaster = Forecaster(surroundings.chi)
         self._controller: Controller = controller or PaperController()
@@ -185,7 +185,7 @@ class Pilot:
             Memory for the next tick, and what to do in this one.
         """
         port = self._passivity.observed(memory.port, inputs.hand.position)
-        fault = self._fault(inputs)
+        fault = self._fault(inputs, memory.sight.sample)
         sight, p = memory.sight, memory.reference.p_h
         if not fault:
             sight, p = look(sight, inputs.vehicle, inputs.state_age, inputs.dt)
@@ -203,15 +203,18 @@ class Pilot:
         """Return where the vehicle would come to rest if the handle went to its centre now, world, m."""
         return self._commander.stop(outputs.forecast, compensated=outputs.commanded.compensated)
 
-    def _fault(self, inputs: Inputs) -> str:
-        """Return in words why nothing can be flown on these inputs, or ""."""
-        hand, (position, velocity) = inputs.hand, inputs.vehicle
+    def _fault(self, inputs: Inputs, seen: VehicleSample | None) -> str:
+        """Return in words why nothing can be flown on these inputs, or "".
+
+        Args:
+            inputs: Of the tick.
+            seen: The last sample that was sound.
+        """
+        (x, y, z), (u, v, w), yaw, *_ = inputs.hand
         # What is not finite stays so in a sum.
-        if not isfinite(sum(hand.position) + sum(hand.velocity) + hand.yaw + inputs.dt):
+        if not isfinite(x + y + z + u + v + w + yaw + inputs.dt):
             return "the handle gave a number that is not finite"
-        # Comparisons with what is not a number are false.
-        far, fast = max(map(abs, position)), max(map(abs, velocity))
-        if not (isfinite(sum(position) + sum(velocity)) and far <= _FURTHEST and fast <= _FASTEST):
+        if inputs.vehicle is not seen and not _can_be(inputs.vehicle):
             return "the vehicle gave a number that cannot be"
         if inputs.phase is Phase.ENGAGED and not inputs.state_age <= self._settings.safety.state_stale_s:
             return f"the vehicle's position is {inputs.state_age:.1f} s old"
@@ -239,16 +242,22 @@ class Pilot:
         outputs = Outputs(
             commanded.setpoint, port, p, reference, view.error, law, commanded, cues, forecast, terms
         )
-        return Memory(sight, forecast, reference, state, commanding, presence, port, coupled=True), outputs
+        return Memory(
+            sight, forecast, reference, state, terms, commanding, presence, port, coupled=True
+        ), outputs
 
     def _terms(self, memory: Memory, inputs: Inputs) -> Terms:
-        """Return the terms under which this tick is flown."""
+        """Return the terms under which this tick is flown; they change with the link and the preset only."""
+        known, preset = memory.terms, inputs.choices.preset
+        if known and known.told == (inputs.delay, inputs.loss, preset):
+            return known
         link = self._settings.link
         delay = inputs.delay if isfinite(inputs.delay) else link.assumed_delay_s
-        assistance = PRESETS[inputs.choices.preset]
+        assistance = PRESETS[preset]
         left = shares(inputs.delay, inputs.loss, link)
-        loop = self._commander.loop(memory.commanding, delay, assistance)
-        return Terms(delay, assistance, loop, left.gain, left.speed * assistance.speed)
+        loop = self._commander.loop(known, delay, assistance)
+        told = (inputs.delay, inputs.loss, preset)
+        return Terms(told, delay, assistance, loop, left.gain, left.speed * assistance.speed)
 
     def _view(
         self, inputs: Inputs, reference: Reference, p: Vector4, forecast: Forecast, terms: Terms
@@ -303,3 +312,11 @@ class Pilot:
     def _faded(self, force: Vector3, dt: float) -> Vector3:
         """Let a force go, at a rate that takes the device's strongest to nothing in `FADE_S`."""
         return force if force == ZERO3 else slewed(force, ZERO3, self._force_limit * dt / FADE_S)
+
+
+def _can_be(sample: VehicleSample) -> bool:
+    """Say whether a sample's numbers are ones that a vehicle can mean. Comparisons with what is none are false."""
+    position, velocity = sample
+    return all(abs(place) <= _FURTHEST for place in position) and all(
+        abs(rate) <= _FASTEST for rate in velocity
+    )

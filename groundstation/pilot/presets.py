@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from groundstation.messages import Preset
-
 
 class Weights(NamedTuple):
     """Weight of each cue in the force."""
@@ -33,13 +31,12 @@ class Assistance(NamedTuple):
     speed: float
 
 
-PRESETS: dict[Preset, Assistance] = {
+# In the order of `Preset`.
+PRESETS: tuple[Assistance, ...] = (
     # Exactly equations (4) and (5): what the hand asks for is flown, also into an obstacle.
-    Preset.PAPER: Assistance(Weights(1.0, 0.0, 0.0, 0.0, 0.0), guard=False, compensation=False, speed=1.0),
-    Preset.ASSISTED: Assistance(Weights(1.0, 1.0, 0.0, 1.0, 1.0), guard=True, compensation=True, speed=1.0),
+    Assistance(Weights(1.0, 0.0, 0.0, 0.0, 0.0), guard=False, compensation=False, speed=1.0),
+    Assistance(Weights(1.0, 1.0, 0.0, 1.0, 1.0), guard=True, compensation=True, speed=1.0),
     # The drone itself, and as little else as possible; the guard stays, silently.
-    Preset.TRANSPARENT: Assistance(
-        Weights(1.0, 0.0, 1.0, 0.0, 0.0), guard=True, compensation=True, speed=1.0
-    ),
-    Preset.TRAINING: Assistance(Weights(1.0, 1.5, 0.0, 1.5, 1.0), guard=True, compensation=True, speed=0.6),
-}
+    Assistance(Weights(1.0, 0.0, 1.0, 0.0, 0.0), guard=True, compensation=True, speed=1.0),
+    Assistance(Weights(1.0, 1.5, 0.0, 1.5, 1.0), guard=True, compensation=True, speed=0.6),
+)

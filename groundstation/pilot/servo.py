@@ -16,7 +16,7 @@ from groundstation.child import Lifeline, run_child
 from groundstation.clock import Clock, Every, Pacer
 from groundstation.devices.keeper import ABSENT, DeviceKeeper, Start, in_thread
 from groundstation.devices.making import flight_device
-from groundstation.messages import COMMAND, Command, CommandKind, Phase, Severity
+from groundstation.messages import COMMAND, Command, CommandKind, MappingMode, Phase, Severity
 from groundstation.pilot.chooser import CHOOSING, at_tick, beginning, obeyed, pressed
 from groundstation.pilot.engagement import (
     Conditions,
@@ -165,7 +165,7 @@ class Servo:
     def _tell_gains(self) -> None:
         """Say where the device cannot render the gains that are set."""
         set_, info = self._settings.control, self._info
-        for mode, used in self._pilot.gains.items():
+        for mode, used in zip(MappingMode, self._pilot.gains, strict=True):
             if (used.stiffness, used.damping) != (set_.stiffness, set_.damping):
                 x, y, z = used.stiffness
                 self._bus.event(

@@ -22,6 +22,13 @@ _CONSEQUENCES = {
     "sim": "the simulated vehicle has gone",
     "recorder": "this flight is no longer recorded",
 }
+# What the guard keeps away from beside obstacles.
+_BOUNDS = {
+    "floor": "the ground",
+    "ceiling": "the ceiling",
+    "fence": "the fence",
+    "sensor": "what its sensors see",
+}
 
 
 def worst(frame: Frame) -> Alert:
@@ -142,8 +149,10 @@ def _hampered(frame: Frame) -> str:
     if pilot.waiting:
         return "Centre the handle to take hold."
     if frame.guarded_by:
-        return f"Guard: it keeps the vehicle away from {frame.guarded_by}."
-    return "On the leash: the vehicle does not keep up, the force shows where it is." if pilot.on_leash else ""
+        return f"Guard: it keeps the vehicle away from {_BOUNDS.get(frame.guarded_by, frame.guarded_by)}."
+    return (
+        "On the leash: the vehicle does not keep up, the force shows where it is." if pilot.on_leash else ""
+    )
 
 
 def _standstill(frame: Frame) -> str:

@@ -86,7 +86,7 @@ def _next_preset(value: int) -> int:
 def _cue(cue: Cue, key: str, explains: str) -> Choice:
     name = str(cue.name).lower()
     return Choice(
-        name, CommandKind.CUES, key, f"Cue: {name}", f"{explains} On or off.", lambda value: value ^ cue
+        name, CommandKind.CUES, key, f"{name.capitalize()} cue on/off", explains, lambda on: on ^ cue
     )
 
 
@@ -99,9 +99,9 @@ CUES: dict[Cue, Choice] = {
     Cue.DAMPING: _cue(Cue.DAMPING, "5", "Resistance to the handle's motion."),
 }
 CHOICES = (
-    Choice("mapping", _K.MAPPING, "m", "Mapping", "Rate or position: handle's place or travel.", _other),
-    Choice("fine", _K.FINE, "f", "Fine", "Finer moves; again: coarse.", _other),
-    Choice("clutch", _K.CLUTCH, "c", "Clutch", "The handle moves nothing; again: takes hold.", _other),
+    Choice("mapping", _K.MAPPING, "m", "Mapping", "Rate or position.", _other),
+    Choice("fine", _K.FINE, "f", "Fine", "Finer moves, or coarse again.", _other),
+    Choice("clutch", _K.CLUTCH, "c", "Clutch", "The handle moves nothing, or takes hold again.", _other),
     Choice("preset", _K.PRESET, "p", "Next preset", "Which cues and helps there are.", _next_preset),
     *CUES.values(),
 )

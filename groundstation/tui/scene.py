@@ -1,4 +1,4 @@
-"""The map from above as pure drawing: obstacles, route, target, trail, vehicle, hand and leash.
+"""The map from above as pure drawing, what stands still: obstacles, fence, route, target. For the rest see `moving`.
 
 North is up, east to the right; dots are square, so one scale holds for both.
 """
@@ -16,24 +16,21 @@ from groundstation.training.mission import Mission
 from groundstation.tui.canvas import Canvas
 from groundstation.tui.theme import Tone
 from sim.environment.shapes import extent, half_height, primitives, reach
-from sim.scenario import Box, Pad, Primitive
+from sim.scenario import Box, Obstacle, Pad, Primitive
 
 Floats = NDArray[np.float64]
 
 # Free flight shows at least this far around the start, m.
 LEAST_HALF_M = 4.0
 MARGIN_M = 1.0
+# What the pilot calls the fence where it guards.
+FENCE = "fence"
 _SCALES = tuple(
     step * 10.0**power
     for power in range(-2, 4)
     for step in (1.0, 1.25, 1.6, 2.0, 2.5, 3.2, 4.0, 5.0, 6.4, 8.0)
 )
 _RULERS = tuple(step * 10.0**power for power in range(-1, 5) for step in (1.0, 2.0, 5.0))
-# An arrowhead of length 1.6 with a notched tail: x forward, y left.
-_ARROW = np.array(
-    [(x, y) for x in np.arange(-0.6, 1.01, 0.05) for y in np.arange(-0.6, 0.61, 0.05)
-     if abs(y) <= (1.0 - x) * 0.35 and (x >= -0.25 or abs(y) >= (-0.25 - x) * 1.1)]
-)  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,8 +89,10 @@ def framing(mission: Mission | None, points: Sequence[tuple[float, float]], widt
     return View((max(easts) + min(easts)) / 2, (max(norths) + min(norths)) / 2, scale, width, height)
 
 
-def draw_world(canvas: Canvas, view: View, mission: Mission | None, altitude: float) -> None:
-    """Draw what stands still: grid, start, pads, obstacles, route and target.
+def draw_world(
+    canvas: Canvas, view: View, mission: Mission | None, altitude: float, fence: float = 0.0
+) -> None:
+    """Draw what stands still: grid, start, fence, pads, obstacles, route and target.
 
     Args:
         canvas: Drawn on.
@@ -101,9 +100,12 @@ def draw_world(canvas: Canvas, view: View, mission: Mission | None, altitude: fl
         mission: What is flown, or None.
         altitude: The vehicle's, m: what reaches it is drawn solid, the rest as outlines; so a gate's posts are solid
             and its beams are lines.
+        fence: Its radius around the start, m; 0 for none.
     """
     _grid(canvas, view)
     _cross(canvas, float(view.x(0.0)), float(view.y(0.0)), 2, Tone.MUTED)
+    if fence > 0.0:
+        ring(canvas, view, (0.0, 0.0, fence), Tone.OBSTACLE, gap=2)
     if mission is None:
         return
     for pad in mission.pad:
@@ -111,7 +113,9 @@ def draw_world(canvas: Canvas, view: View, mission: Mission | None, altitude: fl
     for solid, part in sorted(
         ((beside(part, altitude), part) for part in _parts(mission)), key=lambda each: each[0]
     ):
-        _solid(canvas, view, part, solid=solid)
+        if solid:
+            _hatch(canvas, view, part)
+        _outline(canvas, view, part, Tone.BESIDE if solid else Tone.OBSTACLE)
     if mission.route:
         way = np.array([(0.0, 0.0), *((east, north) for east, north, _ in mission.route)])
         canvas.line(view.x(way[:, 0]), view.y(way[:, 1]), Tone.ROUTE, gap=4)
@@ -122,8 +126,27 @@ def draw_world(canvas: Canvas, view: View, mission: Mission | None, altitude: fl
             canvas.line(
                 view.x(np.array([last[0], east])), view.y(np.array([last[1], north])), Tone.ROUTE, gap=4
             )
-        _ring(canvas, view, (east, north, max(mission.target.radius, 4.0 * view.scale)), Tone.TARGET)
+        ring(canvas, view, (east, north, max(mission.target.radius, 4.0 * view.scale)), Tone.TARGET)
         _cross(canvas, float(view.x(east)), float(view.y(north)), 1, Tone.TARGET)
+
+
+def draw_guarded(canvas: Canvas, view: View, mission: Mission | None, name: str, fence: float = 0.0) -> None:
+    """Draw what the guard keeps away from so that it stands out: an obstacle with its name, or the fence.
+
+    Args:
+        canvas: Drawn on.
+        view: What it shows.
+        mission: What is flown, or None.
+        name: As the pilot says it; what has no place on the map is not drawn.
+        fence: Its radius around the start, m; 0 for none.
+    """
+    guarded = [obstacle for obstacle in mission.obstacle if obstacle.name == name] if mission else []
+    for obstacle in guarded:
+        for part in primitives(obstacle):
+            _outline(canvas, view, part, Tone.WARN)
+        _label(canvas, view, obstacle, Tone.WARN)
+    if name == FENCE and fence > 0.0 and not guarded:
+        ring(canvas, view, (0.0, 0.0, fence), Tone.WARN)
 
 
 def beside(part: Primitive, altitude: float) -> bool:
@@ -134,59 +157,6 @@ def beside(part: Primitive, altitude: float) -> bool:
 def levels(mission: Mission | None, altitude: float) -> tuple[bool, ...]:
     """Return for each part of the obstacles whether it is at the vehicle's altitude: it decides how the map looks."""
     return tuple(beside(part, altitude) for part in _parts(mission)) if mission else ()
-
-
-def draw_trail(canvas: Canvas, view: View, points: Floats) -> None:
-    """Draw the way flown.
-
-    Args:
-        canvas: Drawn on.
-        view: What it shows.
-        points: East and north, m, shape (n, 2).
-    """
-    if len(points):
-        canvas.plot(view.x(points[:, 0]), view.y(points[:, 1]), Tone.TRAIL)
-
-
-def draw_vehicle(canvas: Canvas, view: View, east: float, north: float, yaw: float) -> None:
-    """Draw the vehicle as an arrowhead that is always well seen; yaw counter-clockwise from east, rad."""
-    if not all(map(math.isfinite, (east, north, yaw))):
-        return
-    cosine, sine = math.cos(yaw), math.sin(yaw)
-    size = max(4.5, min(8.0, view.height / 14))
-    forward, left = size * _ARROW[:, 0], size * _ARROW[:, 1]
-    x = view.x(east) + cosine * forward - sine * left
-    y = view.y(north) - (sine * forward + cosine * left)
-    canvas.plot(x, y, Tone.VEHICLE)
-
-
-def draw_hand(
-    canvas: Canvas,
-    view: View,
-    place: tuple[float, float],
-    wanted: tuple[float, float],
-    leash: float,
-    *,
-    taut: bool,
-) -> None:
-    """Draw where the hand wants the vehicle, the line to it, and the leash around the vehicle.
-
-    Args:
-        canvas: Drawn on.
-        view: What it shows.
-        place: The vehicle, m.
-        wanted: p_h, m.
-        leash: Its length, m.
-        taut: The leash holds p_h back.
-    """
-    if not all(map(math.isfinite, (*place, *wanted))):
-        return
-    tone = Tone.WARN if taut else Tone.HAND
-    _ring(canvas, view, (*place, leash), Tone.WARN if taut else Tone.FAINT, gap=3)
-    ends = np.array([place, wanted])
-    canvas.line(view.x(ends[:, 0]), view.y(ends[:, 1]), tone, gap=2)
-    x, y = float(view.x(wanted[0])), float(view.y(wanted[1]))
-    canvas.line([x - 2, x + 2, x + 2, x - 2, x - 2], [y - 2, y - 2, y + 2, y + 2, y - 2], tone)
 
 
 def draw_legend(canvas: Canvas, view: View) -> None:
@@ -201,9 +171,21 @@ def draw_legend(canvas: Canvas, view: View) -> None:
 def label_obstacles(canvas: Canvas, view: View, mission: Mission | None) -> None:
     """Write the obstacles' names under them."""
     for obstacle in mission.obstacle if mission else ():
-        (west, south, _), (east, _, _) = extent(obstacle)
-        column = int(view.x(0.5 * (west + east)) / 2) - len(obstacle.name) // 2
-        canvas.letters(column, int(view.y(south) / 4) + 1, obstacle.name, Tone.MUTED)
+        _label(canvas, view, obstacle, Tone.MUTED)
+
+
+def ring(canvas: Canvas, view: View, circle: tuple[float, float, float], tone: Tone, gap: int = 1) -> None:
+    """Draw a circle of (east, north, radius), m; of its dots only every so many, for a dotted one."""
+    east, north, radius = circle
+    count = int(min(max(math.tau * radius / view.scale, 12), 2000))
+    angles = np.arange(0, count, gap) * (math.tau / count)
+    canvas.plot(view.x(east + radius * np.cos(angles)), view.y(north + radius * np.sin(angles)), tone)
+
+
+def _label(canvas: Canvas, view: View, obstacle: Obstacle, tone: Tone) -> None:
+    (west, south, _), (east, _, _) = extent(obstacle)
+    column = int(view.x(0.5 * (west + east)) / 2) - len(obstacle.name) // 2
+    canvas.letters(column, int(view.y(south) / 4) + 1, obstacle.name, tone)
 
 
 def _parts(mission: Mission) -> list[Primitive]:
@@ -222,24 +204,27 @@ def _grid(canvas: Canvas, view: View) -> None:
     canvas.plot(view.x(grid_east.ravel()), view.y(grid_north.ravel()), Tone.GRID)
 
 
-def _solid(canvas: Canvas, view: View, part: Primitive, *, solid: bool) -> None:
-    tone = Tone.BESIDE if solid else Tone.OBSTACLE
+def _hatch(canvas: Canvas, view: View, part: Primitive) -> None:
+    """Fill a part with dots."""
     east, north, _ = part.center
-    if solid:
-        steps = np.arange(-reach(part), reach(part) + view.scale, view.scale)
-        x, y = (axis.ravel() for axis in np.meshgrid(steps, steps))
-        inside = _inside(part, x, y)
-        columns, rows = np.rint(view.x(east + x[inside])), np.rint(view.y(north + y[inside]))
-        hatched = (columns + rows) % 2 == 0
-        canvas.plot(columns[hatched], rows[hatched], tone)
-    if isinstance(part, Box):
-        yaw, (length, width, _) = math.radians(part.yaw_deg), part.size
-        corners = np.array([(1, 1), (-1, 1), (-1, -1), (1, -1), (1, 1)]) * (length / 2, width / 2)
-        x = east + math.cos(yaw) * corners[:, 0] - math.sin(yaw) * corners[:, 1]
-        y = north + math.sin(yaw) * corners[:, 0] + math.cos(yaw) * corners[:, 1]
-        canvas.line(view.x(x), view.y(y), tone)
-    else:
-        _ring(canvas, view, (east, north, part.radius), tone)
+    steps = np.arange(-reach(part), reach(part) + view.scale, view.scale)
+    x, y = (axis.ravel() for axis in np.meshgrid(steps, steps))
+    inside = _inside(part, x, y)
+    columns, rows = np.rint(view.x(east + x[inside])), np.rint(view.y(north + y[inside]))
+    hatched = (columns + rows) % 2 == 0
+    canvas.plot(columns[hatched], rows[hatched], Tone.BESIDE)
+
+
+def _outline(canvas: Canvas, view: View, part: Primitive, tone: Tone) -> None:
+    east, north, _ = part.center
+    if not isinstance(part, Box):
+        ring(canvas, view, (east, north, part.radius), tone)
+        return
+    yaw, (length, width, _) = math.radians(part.yaw_deg), part.size
+    corners = np.array([(1, 1), (-1, 1), (-1, -1), (1, -1), (1, 1)]) * (length / 2, width / 2)
+    x = east + math.cos(yaw) * corners[:, 0] - math.sin(yaw) * corners[:, 1]
+    y = north + math.sin(yaw) * corners[:, 0] + math.cos(yaw) * corners[:, 1]
+    canvas.line(view.x(x), view.y(y), tone)
 
 
 def _inside(part: Primitive, x: Floats, y: Floats) -> NDArray[np.bool_]:
@@ -254,16 +239,8 @@ def _inside(part: Primitive, x: Floats, y: Floats) -> NDArray[np.bool_]:
 
 def _pad(canvas: Canvas, view: View, pad: Pad) -> None:
     east, north, _ = pad.position
-    _ring(canvas, view, (east, north, max(pad.radius, 3.0 * view.scale)), Tone.MUTED)
+    ring(canvas, view, (east, north, max(pad.radius, 3.0 * view.scale)), Tone.MUTED)
     _cross(canvas, float(view.x(east)), float(view.y(north)), 1, Tone.MUTED)
-
-
-def _ring(canvas: Canvas, view: View, circle: tuple[float, float, float], tone: Tone, gap: int = 1) -> None:
-    """Draw a circle of (east, north, radius), m."""
-    east, north, radius = circle
-    count = int(min(max(math.tau * radius / view.scale, 12), 2000))
-    angles = np.arange(0, count, gap) * (math.tau / count)
-    canvas.plot(view.x(east + radius * np.cos(angles)), view.y(north + radius * np.sin(angles)), tone)
 
 
 def _cross(canvas: Canvas, x: float, y: float, arm: int, tone: Tone) -> None:

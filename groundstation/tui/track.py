@@ -75,13 +75,13 @@ class Track:
 class History:
     """The curves of the paper's figures 11 to 13 over the last moments, at `RATE_HZ`.
 
-    Columns: time; force x y z (handle, N); error x y z (world, m); velocity asked for, then flown, each
+    Columns: time; force x y z (handle, N); error x y z (world, m); velocity meant (v_c), then flown, each
     forward left up (vehicle, m/s).
     """
 
     RATE_HZ = 10.0
     SPAN_S = 40.0
-    TIME, FORCE, ERROR, ASKED, FLOWN = 0, 1, 4, 7, 10
+    TIME, FORCE, ERROR, MEANT, FLOWN = 0, 1, 4, 7, 10
     _COLUMNS = 13
 
     def __init__(self) -> None:
@@ -94,26 +94,39 @@ class History:
         if now < self._next:
             return
         self._next = now + 1.0 / self.RATE_HZ - 1e-6
-        handle, pilot, vehicle, setpoint = (
-            snapshot.handle,
-            snapshot.pilot,
-            snapshot.vehicle,
-            snapshot.setpoint,
-        )
-        force = error = asked = flown = (math.nan, math.nan, math.nan)
+        handle, pilot, vehicle = snapshot.handle, snapshot.pilot, snapshot.vehicle
+        force = error = flown = (math.nan, math.nan, math.nan)
         if handle and now - handle.t < stale_s:
             force = tuple(handle.force)
         if pilot and now - pilot.t < stale_s:
             error = tuple(pilot.error)[:3]
-        if setpoint and setpoint.active and now - setpoint.t < stale_s:
-            asked = tuple(setpoint.velocity)[:3]
+        meant = meant_velocity(snapshot, stale_s)[:3]
         if vehicle and now - vehicle.t < stale_s:
             flown = velocity_on_vehicle(vehicle)[:3]
-        self._ring.add((now, *force, *error, *asked, *flown))
+        self._ring.add((now, *force, *error, *meant, *flown))
 
     def rows(self) -> Floats:
         """Return the samples, oldest first, shape (n, 13)."""
         return self._ring.rows()
+
+
+def meant_velocity(snapshot: Snapshot, stale_s: float) -> tuple[float, float, float, float]:
+    """Return v_c while setpoints are streamed: the velocity that the vehicle is meant to have.
+
+    The setpoint itself is another while the vehicle's response is compensated.
+
+    Args:
+        snapshot: The newest of everything.
+        stale_s: Age from which a setpoint is none, s.
+
+    Returns:
+        [forward, left, up, yaw rate], m/s and rad/s; NaN where nothing is streamed.
+    """
+    pilot, setpoint = snapshot.pilot, snapshot.setpoint
+    if pilot is None or setpoint is None or not setpoint.active or snapshot.t - setpoint.t > stale_s:
+        return math.nan, math.nan, math.nan, math.nan
+    forward, left, up, yaw_rate = pilot.v_c
+    return forward, left, up, yaw_rate
 
 
 def velocity_on_vehicle(state: VehicleState) -> tuple[float, float, float, float]:

@@ -4,7 +4,8 @@
       ▲                                │                                    │
       └── setpoint inactive ── ENDED ◄─┴── any end ◄────────────────────────┘
 
-What has ended does not resume by itself: it takes an inactive setpoint, hence a fresh act of the operator.
+Setpoints stream for a moment before offboard is asked for: a vehicle denies it that hears none, and the first few may
+be lost. What has ended does not resume by itself: it takes an inactive setpoint, hence a fresh act of the operator.
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ from enum import IntEnum
 from groundstation.messages import FlightMode, Stream
 
 START_TIMEOUT_S = 3.0
+LEAD_S = 0.2
 
 
 class Act(IntEnum):
@@ -57,6 +59,7 @@ class OffboardStream:
     state: Stream = Stream.IDLE
     accepted_t: float | None = None
     _started_t: float = 0.0
+    _asked: bool = False
 
     def step(self, seen: Seen) -> tuple[Act, str]:
         """Advance and return what to do and, when a stream ended against the pilot's wish, why."""
@@ -69,7 +72,8 @@ class OffboardStream:
             if not fresh:
                 return Act.NOTHING, ""
             self.state, self._started_t, self.accepted_t = Stream.STARTING, seen.now, None
-            return Act.START, ""
+            self._asked = False
+            return Act.NOTHING, ""
         if not seen.active:
             return self._end(Act.CLOSE_AND_HOLD)
         if not fresh:
@@ -92,6 +96,9 @@ class OffboardStream:
         return self._end(Act.CLOSE, f"offboard refused: {why}")
 
     def _starting(self, seen: Seen) -> tuple[Act, str]:
+        if not self._asked:
+            self._asked = seen.now - self._started_t >= LEAD_S
+            return (Act.START if self._asked else Act.NOTHING), ""
         proven = self.accepted_t is not None and seen.mode_t > self.accepted_t
         if proven and seen.mode is FlightMode.OFFBOARD:
             self.state = Stream.FLYING

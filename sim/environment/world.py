@@ -7,7 +7,7 @@ are `sim.environment.field`'s business.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from math import cos, hypot, inf, radians, sin, sqrt
+from math import copysign, cos, hypot, inf, radians, sin, sqrt
 from typing import NamedTuple, Protocol
 
 from sim.environment.shapes import primitives
@@ -121,16 +121,18 @@ class _Box:
         return sqrt(a * a + b * b + c * c)
 
     def normal(self, x: float, y: float, z: float) -> Vector3:
-        local = self._local(x, y, z)
-        beyond = [abs(value) - half for value, half in zip(local, self._half, strict=True)]
-        deepest = max(beyond)
-        if deepest > 0.0:
-            out = [max(value, 0.0) for value in beyond]
-        else:
-            out = [float(index == beyond.index(deepest)) for index in range(3)]
-        length = hypot(*out)
-        u, v, w = ((size if value >= 0.0 else -size) / length for size, value in zip(out, local, strict=True))
-        return self._c * u - self._s * v, self._s * u + self._c * v, w
+        u, v, w = self._local(x, y, z)
+        a, b, c = abs(u) - self._half[0], abs(v) - self._half[1], abs(w) - self._half[2]
+        if a <= 0.0 and b <= 0.0 and c <= 0.0:
+            # Within, the way out is the nearest face's.
+            if a >= b and a >= c:
+                a, b, c = 1.0, 0.0, 0.0
+            else:
+                a, b, c = (0.0, 1.0, 0.0) if b >= c else (0.0, 0.0, 1.0)
+        a, b, c = max(a, 0.0), max(b, 0.0), max(c, 0.0)
+        length = sqrt(a * a + b * b + c * c)
+        a, b, c = copysign(a, u) / length, copysign(b, v) / length, copysign(c, w) / length
+        return self._c * a - self._s * b, self._s * a + self._c * b, c
 
     def ray(self, origin: Vector3, heading: Vector3) -> float:
         """Intersect with the three slabs that a box is (Kay and Kajiya 1986, Ray tracing complex scenes)."""

@@ -12,7 +12,9 @@ from textual.containers import Vertical, VerticalScroll
 from textual.screen import ModalScreen
 from textual.widgets import Static
 
+from groundstation.messages import CommandKind
 from groundstation.tui.acts import ACTS, BY_NAME
+from groundstation.tui.choices import CHOICES
 from groundstation.tui.screens.flight import STEPS
 from groundstation.tui.theme import STYLES, Tone
 
@@ -100,12 +102,18 @@ def help_table() -> Table:
     table.add_column(style=STYLES[Tone.MUTED])
     for act in ACTS:
         table.add_row(act.key, act.label, act.explains)
+    _section(table, "choices", "at any time")
+    for choice in CHOICES:
+        if choice.kind is CommandKind.CUES:
+            table.add_row(choice.key, choice.name, f"{choice.explains} On or off.")
+        else:
+            table.add_row(choice.key, choice.label, choice.explains)
     _section(table, "stick", "on the screen; steps of 20 % that stay")
     arrows = {"up": "↑", "down": "↓", "left": "←", "right": "→"}
     for key, _, _, words in STEPS:
         table.add_row(arrows.get(key, key), words)
     table.add_row("space", "centre", "All axes at once; also 0.")
-    table.add_row("mouse", "drag", "Press in a pad and drag; letting go centres.")
+    table.add_row("mouse", "drag", "Press in a pad and drag; letting go centres, in rate mode.")
     _section(table, "screen", "")
     table.add_row("?", "help", "Esc goes back.")
     table.add_row("^p", "palette", "All acts by name.")
@@ -116,6 +124,9 @@ def help_table() -> Table:
     table.add_row(
         Text("□", STYLES[Tone.HAND]), "p_h", "Where the hand wants the vehicle; around it the leash."
     )
+    table.add_row(Text("△ ×", STYLES[Tone.VEHICLE]), "forecast", "Where it will be; where it can stop.")
+    table.add_row(Text("POS", STYLES[Tone.FORCE]), "cue", "In capitals: acts. ○ off, – not in this preset.")
+    table.add_row("↓", "gain", "The delay leaves less than is set.")
     table.add_row(Text("◎", STYLES[Tone.TARGET]), "target", "Where the mission leads.")
     table.add_row("+ −", "axes", "Positive is forward, left, up, turning left.")
     return table

@@ -41,8 +41,8 @@ class Chart:
 
 
 def _pair(title: str, axis: int) -> Chart:
-    asked = Curve(History.ASKED + axis, "asked", Tone.HAND, dotted=True)
-    return Chart(title, "m/s", (asked, Curve(History.FLOWN + axis, "flown", Tone.VEHICLE)))
+    meant = Curve(History.MEANT + axis, "v_c", Tone.HAND, dotted=True)
+    return Chart(title, "m/s", (meant, Curve(History.FLOWN + axis, "flown", Tone.VEHICLE)))
 
 
 def _triple(title: str, unit: str, first: int, letters: tuple[str, str, str]) -> Chart:

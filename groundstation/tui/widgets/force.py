@@ -20,7 +20,7 @@ _SHORT = 3
 
 
 class Force(Instrument):
-    """Signed bars: to the right is forward, left, up. Below, how strong each cue is; in a low pane only those that act."""
+    """Signed bars, to the right is forward, left, up, and the cues; in a low pane the total and the cues that act."""
 
     BORDER_TITLE = "force on the hand"
     EVERY = 2
@@ -99,7 +99,7 @@ def _cues(frame: Frame, width: int) -> Iterator[Row]:
         ]
         if part.on and part.weighted:
             figure = f" {quantity(part.norm, 'N', 2, 6)}"
-            strip = gauge(part.norm, frame.force_limit, width - width_of(head) - len(figure), Tone.FORCE)
+            strip = gauge(part.norm, frame.force_limit, width - width_of(head) - len(figure) - 1, Tone.FORCE)
             yield [*head, *strip, (figure, Tone.STRONG if part.acts else Tone.MUTED)]
         else:
             yield [*head, ("off" if part.weighted else f"not in {preset}", Tone.FAINT)]

@@ -96,7 +96,7 @@ class Stick(Instrument):
         self.let_go()
 
     def let_go(self) -> None:
-        """Give the mouse back, and have the handle move the vehicle no more: centred, or in position mode left there."""
+        """Give the mouse back, and have the handle move nothing: centred, or in position mode left where it is."""
         self._held = None
         if self._hand is not None:
             if self._frame is not None and stays(self._frame):

@@ -90,8 +90,8 @@ def _device(frame: Frame) -> list[Row]:
     if device is None:
         return [_row("device", ("no report yet", Tone.MUTED))]
     state = "ready" if device.present and device.homed else "not homed" if device.present else "gone"
-    limits = f"{quantity(1000 * device.workspace, 'mm', 0)} reach, {quantity(device.force_limit, 'N', 1)}"
-    return [_row("device", (f"{words(device.name)}: {state}", Tone.TEXT)), _row("", (limits, Tone.MUTED))]
+    limits = f"  {quantity(1000 * device.workspace, 'mm', 0)}, {quantity(device.force_limit, 'N', 1)}"
+    return [_row("device", (f"{words(device.name)}: {state}", Tone.TEXT), (limits, Tone.MUTED))]
 
 
 def _files(frame: Frame, width: int) -> list[Row]:

@@ -1,23 +1,22 @@
-"""What was asked of the vehicle and what it flies: v_ref of equation (4) against v, on the vehicle's axes."""
+"""What it is meant to fly, v_c of equation (4) after guard and limits, and what it flies, on the vehicle's axes."""
 
 from __future__ import annotations
 
 import math
 
-from groundstation.messages import Setpoint
 from groundstation.tui.frame import Frame
 from groundstation.tui.rows import Row, bar, quantity
 from groundstation.tui.theme import Tone
-from groundstation.tui.track import velocity_on_vehicle
+from groundstation.tui.track import meant_velocity, velocity_on_vehicle
 from groundstation.tui.widgets.instrument import Instrument
 
 _AXES = (("fwd", "m/s"), ("left", "m/s"), ("up", "m/s"), ("yaw", "°/s"))
 
 
 class Velocity(Instrument):
-    """A bar for what is flown, a line for what was asked."""
+    """A bar for what is flown, a line for what is meant."""
 
-    BORDER_TITLE = "velocity  ┃ v_ref  █ flown"
+    BORDER_TITLE = "velocity  ┃ v_c  █ flown"
     EVERY = 3
     STALE_S = 0.5
 
@@ -25,11 +24,15 @@ class Velocity(Instrument):
         """Age of the vehicle's state."""
         return frame.age(frame.snapshot.vehicle)
 
+    def footnote(self, frame: Frame) -> str:
+        """Say that the setpoint is more than v_c, so that the vehicle has it."""
+        return "response compensated" if frame.pilot is not None and frame.pilot.compensated else ""
+
     def draw(self, frame: Frame, width: int, height: int) -> list[Row]:
         """Draw a row an axis."""
         vehicle = frame.snapshot.vehicle
         flown = velocity_on_vehicle(vehicle) if vehicle else (math.nan,) * 4
-        asked = asked_velocity(frame)
+        asked = meant_velocity(frame.snapshot, frame.run.settings.safety.setpoint_stale_s)
         limits = frame.run.settings.limits
         ranges = (limits.horizontal_speed, limits.horizontal_speed, limits.vertical_speed, limits.yaw_rate)
         rows: list[Row] = []
@@ -46,12 +49,3 @@ class Velocity(Instrument):
                 ]
             )
         return rows[:height]
-
-
-def asked_velocity(frame: Frame) -> tuple[float, ...]:
-    """Return the setpoint that is being streamed, [forward, left, up, yaw rate]; NaN where none is."""
-    setpoint: Setpoint | None = frame.snapshot.setpoint
-    stale = frame.age(setpoint) > frame.run.settings.safety.setpoint_stale_s
-    if setpoint is None or stale or not setpoint.active:
-        return (math.nan,) * 4
-    return tuple(setpoint.velocity)

@@ -66,7 +66,7 @@ def canned_run(*, simulated: bool = True, settings: Settings | None = None, miss
 class CannedFlight:
     """The flight; `advance` goes on, `snapshot` tells where it is.
 
-    The hand leads along the mission's route, the vehicle follows with a lag in a wind; near an obstacle the guard acts.
+    The hand leads along the mission's route, the vehicle follows with a lag in a wind; near obstacles the guard acts.
 
     Args:
         run: With the mission.

@@ -14,6 +14,7 @@ from evaluation_support import STEP_TOML, task
 from groundstation.cli import main
 from groundstation.errors import InputError
 from groundstation.evaluation.cluster import fly_on_cluster
+from groundstation.evaluation.trial import fly
 
 PATIENCE_S = 90.0
 # Shows who flew, and kills the first worker that flies with it. The workers do not have this file.
@@ -110,6 +111,9 @@ def test_two_workers_fly_what_one_machine_would_and_one_may_die(tmp_path, cluste
         rows = list(csv.DictReader(file))
     assert len(rows) == 8
     assert {row["completed"] for row in rows} == {"True"}
+    here = fly(task(seed=3)).outcome
+    (there,) = [row for row in rows if (row["controller"], row["seed"]) == ("assisted", "3")]
+    assert float(there["rms_error_m"]) == here.rms_error
 
 
 def test_an_address_where_nothing_answers_is_told():

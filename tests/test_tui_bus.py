@@ -23,6 +23,8 @@ from groundstation.messages import (
     VEHICLE_STATUS,
     CommandAnswer,
     CommandKind,
+    PilotState,
+    Preset,
     Severity,
 )
 from groundstation.run_folder import new_run_id, run_folder, sweep
@@ -74,7 +76,7 @@ async def test_what_is_on_the_bus_is_shown_and_a_key_is_a_command_on_it(run_id):
         assert any("the wind is strong" in events.render_line(y).text for y in range(events.size.height))
         await pilot.press("h")
         (command,) = commands.drain()
-        assert (command.kind, command.source) == (CommandKind.HOLD, b"screen")
+        assert (command.kind, command.value, command.source) == (CommandKind.HOLD, 0, b"screen")
         answer = CommandAnswer(
             t=time.monotonic(), number=command.number, kind=command.kind, ok=0, text=b"busy"
         )
@@ -82,6 +84,22 @@ async def test_what_is_on_the_bus_is_shown_and_a_key_is_a_command_on_it(run_id):
         app.pull()
         await pilot.pause()
         assert [note.message for note in app._notifications] == ["Hold refused: busy."]
+    here.close()
+    there.close()
+
+
+async def test_a_choice_is_a_command_with_the_value_that_follows_from_what_the_pilot_says(run_id):
+    here, there = Bus(run_id, "screen"), Bus(run_id, "pilot")
+    commands = there.subscriber(COMMAND)
+    app = FlightApp(canned_run(), Console(here, "screen"), CannedSupervisor(), None)
+    async with app.run_test() as pilot:
+        # From a moment to come, so that it is not too old to be true on a machine that is busy.
+        state = PilotState(t=time.monotonic() + 60.0, preset=Preset.ASSISTED, cues=31)
+        there.publisher(PILOT_STATE).send(state)
+        app.pull()
+        await pilot.press("p", "1")
+        sent = [(command.kind, command.value) for command in commands.drain()]
+        assert sent == [(CommandKind.PRESET, Preset.TRANSPARENT), (CommandKind.CUES, 30)]
     here.close()
     there.close()
 

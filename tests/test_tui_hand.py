@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -104,6 +105,20 @@ def test_the_history_samples_at_its_rate_and_leaves_gaps_for_what_is_old():
     blank = History()
     blank.add(NOTHING, 0.5)
     assert np.isnan(blank.rows()[0, 1:]).all()
+
+
+def test_the_history_keeps_what_is_meant_and_not_the_compensated_setpoint():
+    flight = CannedFlight(canned_run())
+    flight.advance(8.0)
+    snapshot = flight.snapshot()
+    snapshot.pilot.v_c[:] = (0.5, 0.25, 0.125, 0.0)
+    snapshot.setpoint.velocity[:] = (9.0, 9.0, 9.0, 9.0)
+    history = History()
+    history.add(snapshot, 0.5)
+    assert history.rows()[0, History.MEANT : History.MEANT + 3].tolist() == [0.5, 0.25, 0.125]
+    snapshot.setpoint.active = 0
+    history.add(replace(snapshot, t=snapshot.t + 0.2), 0.5)
+    assert np.isnan(history.rows()[1, History.MEANT : History.MEANT + 3]).all()
 
 
 def test_the_velocity_flown_is_turned_onto_the_vehicles_axes():

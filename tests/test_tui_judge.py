@@ -26,11 +26,11 @@ def flying(seconds: float = 12.0):
     return flight.snapshot()
 
 
-def frame(snapshot=None, **states: str) -> Frame:
+def frame(snapshot=None, guarded_by: str = "", **states: str) -> Frame:
     shown = flying() if snapshot is None else snapshot
     return Frame(
         snapshot=shown, run=RUN, started=1000.0, states=states, stick=CENTRED,
-        hindrances={act.name: "" for act in ACTS}, notes=(), track=Track(), history=History(),
+        hindrances={act.name: "" for act in ACTS}, guarded_by=guarded_by, notes=(), track=Track(), history=History(),
     )  # fmt: skip
 
 
@@ -160,6 +160,17 @@ def test_the_next_step_follows_the_flight():
     assert "Engaging" in next_step(frame(shown))
     shown.pilot.phase, shown.pilot.on_leash = Phase.ENGAGED, 1
     assert "leash" in next_step(frame(shown))
+
+
+def test_what_keeps_the_vehicle_from_the_hand_is_said_the_hands_own_part_first():
+    shown = flying()
+    shown.pilot.on_leash = 1
+    assert next_step(frame(shown, "column")) == "Guard: it keeps the vehicle away from column."
+    assert next_step(frame(shown, "floor")) == "Guard: it keeps the vehicle away from the ground."
+    shown.pilot.waiting = 1
+    assert next_step(frame(shown, "column")) == "Centre the handle to take hold."
+    shown.pilot.clutched = 1
+    assert next_step(frame(shown, "column")) == "Clutch: the handle moves nothing. C takes hold again."
 
 
 def test_the_way_to_the_target():

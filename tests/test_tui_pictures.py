@@ -45,6 +45,14 @@ def test_an_engaged_flight(snap_compare, size):
     assert snap_compare(app, terminal_size=size, run_before=flown(app, reader, flight))
 
 
+def test_a_flight_with_half_a_second_of_delay(snap_compare):
+    run = canned_run()
+    flight = CannedFlight(run, delay=0.5)
+    reader = CannedReader(flight.snapshot())
+    app = FlightApp(run, reader, CannedSupervisor(), CannedStick(), clock=lambda: START)
+    assert snap_compare(app, terminal_size=(120, 40), run_before=flown(app, reader, flight))
+
+
 def test_a_real_vehicle_with_a_question_and_a_lost_link(snap_compare):
     run = canned_run(simulated=False)
     flight = CannedFlight(canned_run())

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from groundstation.tui.rows import bar, clock, fit, quantity, span_of_time, spread, width_of
+from groundstation.tui.rows import bar, clock, fit, gauge, quantity, span_of_time, spread, width_of
 from groundstation.tui.theme import Tone
 
 anything = st.floats(allow_nan=True, allow_infinity=True)
@@ -95,3 +95,15 @@ def test_at_the_limit_a_bar_warns():
 @given(value=anything, limit=anything, width=st.integers(1, 60), mark=anything)
 def test_a_bar_always_has_its_width(value, limit, width, mark):
     assert width_of(bar(value, limit, width, Tone.FORCE, mark)) == 2 * ((width - 1) // 2) + 1
+
+
+def test_a_gauge_grows_from_the_left_and_warns_at_its_limit():
+    assert "".join(text for text, _ in gauge(2.5, 10.0, 10, Tone.FORCE)) == "██▌───────"
+    assert {tone for text, tone in gauge(11.0, 10.0, 10, Tone.FORCE) if text} == {Tone.WARN}
+    for nothing in (None, math.nan, 0.0, -3.0):
+        assert "".join(text for text, _ in gauge(nothing, 10.0, 10, Tone.FORCE)) == "──────────"
+
+
+@given(value=anything, limit=anything, width=st.integers(0, 60))
+def test_a_gauge_always_has_its_width(value, limit, width):
+    assert width_of(gauge(value, limit, width, Tone.FORCE)) == width

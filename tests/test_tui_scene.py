@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-
 import msgspec
 import numpy as np
 import pytest
@@ -11,7 +9,7 @@ from canned_flight import canned_run
 from hypothesis import given
 from hypothesis import strategies as st
 
-from groundstation.tui import moving, scene
+from groundstation.tui import scene
 from groundstation.tui.canvas import Canvas
 from groundstation.tui.theme import Tone
 from sim.environment.shapes import extent

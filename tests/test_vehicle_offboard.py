@@ -80,6 +80,14 @@ def test_a_refusal_ends_it_without_hold(stream):
     assert stream.state is Stream.ENDED
 
 
+def test_a_vehicle_that_does_not_answer_may_be_in_offboard_and_is_told_to_hold(stream):
+    stream.step(seen())
+    act, why = stream.unanswered()
+    assert act is Act.CLOSE_AND_HOLD
+    assert "did not answer" in why
+    assert stream.state is Stream.ENDED
+
+
 def test_letting_go_holds(flying):
     assert flying.step(seen(11.0, active=False, mode=FlightMode.OFFBOARD, mode_t=10.9)) == (
         Act.CLOSE_AND_HOLD,
@@ -110,4 +118,5 @@ def test_what_has_ended_resumes_only_after_a_fresh_act(flying):
     assert flying.state is Stream.ENDED
     flying.step(seen(11.2, active=False))
     assert flying.state is Stream.IDLE
-    assert flying.step(seen(11.3))[0] is Act.START
+    assert flying.step(seen(11.3)) == (Act.NOTHING, "")
+    assert flying.step(seen(11.6))[0] is Act.START

@@ -63,10 +63,8 @@ class Coupling:
             handle: As it is now.
             fault: Why the pilot could not fly the last tick, or "".
         """
-        settings, end = self._settings, self._end
-        conditions = self._conditions(t, handle)
-        self._engagement, ending = advance(self._engagement, conditions, settings.safety)
-        fault = fault or link_fault(end.round_trip, end.loss, settings.link)
+        conditions, safety = self._conditions(t, handle), self._settings.safety
+        self._engagement, ending = advance(self._engagement, conditions, safety)
         if fault and ending is None:
             self._engagement, ending = disengage(self._engagement, fault)
         if ending is not None:
@@ -74,8 +72,8 @@ class Coupling:
             self.reason = ending.words
             self._next_engage = t + _COUPLE_AGAIN_S
             self._next_request = -math.inf
-        elif not fault and not self._landing and t >= self._next_engage:
-            self._engagement, _ = engage(self._engagement, conditions, settings.safety)
+        elif not self._landing and t >= self._next_engage:
+            self._engagement, _ = engage(self._engagement, conditions, safety)
         self.phase = self._engagement.phase
         request = self._request()
         if request is not None and t >= self._next_request:
@@ -114,4 +112,5 @@ class Coupling:
             state_age=t - end.heard_t,
             state_valid=True,
             boots=0,
+            link_fault=link_fault(end.round_trip, end.loss, self._settings.link),
         )

@@ -20,25 +20,28 @@ examples:
 Columns and their formulas: docs/evaluate.md. Exit codes: 0 all flown, 1 the work broke off, 2 bad input, 130 stopped.
 """
 
+# Option, default, placeholder, what it is.
+_AXES = (
+    ("controller", "paper,assisted", "NAMES", "paper, assisted, transparent, training or MODULE:CLASS"),
+    (
+        "guard",
+        "",
+        "NAMES",
+        "barrier, risk_field, off, where the preset has a guard (default: the settings')",
+    ),
+    ("mission", "paper", "NAMES", "missions with a target, by name or .toml file"),
+    ("delay", "0", "S", "round trip to the vehicle and back"),
+    ("jitter", "0", "S", "by how much the delay of each way varies"),
+    ("loss", "0", "SHARE", "of frames lost, each way"),
+    ("wind", "mission", "WINDS", "calm, mission, or speeds in m/s whose direction the seed chooses"),
+    ("operator", "average", "NAMES", "who flies: novice, average, expert"),
+)
+
 
 def fill(parser: argparse.ArgumentParser) -> None:
     """Add the options to a parser."""
     axes = parser.add_argument_group("axes: one value, or several with commas between them")
-    for option, default, metavar, words in (
-        ("controller", "paper,assisted", "NAMES", "paper, assisted, transparent, training or MODULE:CLASS"),
-        (
-            "guard",
-            "",
-            "NAMES",
-            "barrier, risk_field, off, where the preset has a guard (default: the settings')",
-        ),
-        ("mission", "paper", "NAMES", "missions with a target, by name or .toml file"),
-        ("delay", "0", "S", "round trip to the vehicle and back"),
-        ("jitter", "0", "S", "by how much the delay of each way varies"),
-        ("loss", "0", "SHARE", "of frames lost, each way"),
-        ("wind", "mission", "WINDS", "calm, mission, or speeds in m/s whose direction the seed chooses"),
-        ("operator", "average", "NAMES", "who flies: novice, average, expert"),
-    ):
+    for option, default, metavar, words in _AXES:
         told = f"{words} (default: {default})" if default else words
         axes.add_argument(f"--{option}", default=default, metavar=metavar, help=told)
     axes.add_argument("--seeds", type=int, default=10, metavar="N", help="how many, from 0 (default: 10)")

@@ -13,13 +13,13 @@ from typing import NamedTuple
 
 from drivers.device import ZERO3, Vector3
 from groundstation.frames import Vector4
-from groundstation.pilot.margin import USUAL_LAG_S
+from groundstation.pilot.margin import USUAL_LAGS
 from groundstation.pilot.sight import ZERO4, VehicleSample
 from sim.models.dynamic import Chi, ChiTuple, along, carried, rate
 
-# A response without coupling, gain 1 and the usual lag, for a vehicle whose own is not known.
+# A response without coupling and of gain 1, for a vehicle whose own is not known.
 USUAL_CHI = Chi(
-    chi_1=USUAL_LAG_S, chi_3=USUAL_LAG_S, chi_5=USUAL_LAG_S, chi_9=USUAL_LAG_S,
+    chi_1=USUAL_LAGS[0].time, chi_3=USUAL_LAGS[1].time, chi_5=USUAL_LAGS[2].time, chi_9=USUAL_LAGS[3].time,
     chi_10=1.0, chi_11=0.0, chi_13=0.0, chi_14=1.0, chi_16=1.0, chi_19=1.0,
 )  # fmt: skip
 # How often a setpoint is noted, s, and how long it is remembered: beyond that nothing is flown.
@@ -89,7 +89,10 @@ class Forecaster:
         t = before.t + dt
         if sample is before.sample:
             p, v = self._flown(before.p, before.v, _newest(before.marks), before.push, dt)
-            return Forecast(t, before.marks, sample, before.sample_t, p, v, before.push, before.believed)
+            world = _in_world(v, p[3])
+            return Forecast(
+                t, before.marks, sample, before.sample_t, p, v, world, before.push, before.believed
+            )
         sample_t = t - age - delay
         push, believed = self._observed(before, sample, sample_t)
         p, v = self._through(before.marks, sample, push, sample_t, t)

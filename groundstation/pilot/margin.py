@@ -17,21 +17,23 @@ from typing import NamedTuple
 from groundstation.frames import Vector4
 from sim.models.dynamic import Chi
 
-# Time constant with which a vehicle's own velocity controller follows where it is not known, s: an estimate.
-USUAL_LAG_S = 0.3
 _STEPS = 40
 
 
 class Lag(NamedTuple):
     """A first-order velocity response: gain at rest, and time constant, s."""
 
-    gain: float = 1.0
-    time: float = USUAL_LAG_S
+    gain: float
+    time: float
 
 
 Lags = tuple[Lag, Lag, Lag, Lag]
 
-USUAL_LAGS: Lags = (Lag(), Lag(), Lag(), Lag())
+# A vehicle with a velocity controller of its own, where its response is not known: PX4 by its defaults. The time is
+# that of the velocity loop, 1 / MPC_XY_VEL_P_ACC (1.8) and 1 / MPC_Z_VEL_P_ACC (4.0), and 0.1 s of the attitude's
+# below it; of yaw an estimate.
+_PLANE, _UP, _YAW = Lag(1.0, 0.65), Lag(1.0, 0.35), Lag(1.0, 0.25)
+USUAL_LAGS: Lags = (_PLANE, _PLANE, _UP, _YAW)
 # What compensation makes of a known response: it follows.
 COMPENSATED: Lags = (Lag(1.0, 0.05), Lag(1.0, 0.05), Lag(1.0, 0.05), Lag(1.0, 0.05))
 

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import datetime
+import importlib
 import os
 import sys
+import threading
 import time
 import traceback
 
@@ -26,7 +28,12 @@ _NICENESS = 10
 def record(run: Run, bus: Bus, lifeline: Lifeline) -> None:
     """Record until the lifeline no longer holds."""
     taps = Taps(bus)
-    # Rerun takes its second to import; the taps hold what comes meanwhile. The heart begins to beat after it.
+    # Rerun takes seconds to import on a busy machine, longer than the taps hold. The heart begins to beat after it.
+    opening = threading.Thread(target=importlib.import_module, args=("groundstation.recording.session",))
+    opening.start()
+    while opening.is_alive():
+        taps.drain()
+        opening.join(_TURN_S)
     from groundstation.recording.session import Session, start_of
 
     start = start_of(run.started, datetime.datetime.now().astimezone(), time.monotonic())

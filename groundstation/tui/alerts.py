@@ -156,10 +156,10 @@ def _hampered(frame: Frame) -> str:
 
 
 def _standstill(frame: Frame) -> str:
-    """Say how the vehicle comes to stand still."""
+    """Say how the hand gets the vehicle to stand, or itself some way to go."""
     pilot = frame.pilot
     if pilot is not None and pilot.mapping == MappingMode.POSITION:
-        return "It stands where the handle does; C clutches to reach on"
+        return "C clutches to reach on"
     return "Space lets go of the stick" if frame.stick is not None else "The handle's centre is standstill"
 
 

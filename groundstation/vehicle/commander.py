@@ -48,22 +48,29 @@ class Answer(NamedTuple):
     why: str
 
 
+class OffboardAnswer(NamedTuple):
+    """What became of asking for offboard: acknowledged, or answered otherwise, or not at all; and why."""
+
+    ok: bool
+    heard: bool
+    why: str
+
+
 class Commander:
     """Sends commands and collects their answers; callbacks come on MAVSDK's thread.
 
     Args:
         system: The vehicle.
         takeoff_altitude: Where take-off ends, m above the ground.
-        on_offboard: Told whether the vehicle acknowledged offboard, and why not.
+
+    Attributes:
+        answers, offboard_answers: What has been answered since they were last emptied.
     """
 
-    def __init__(
-        self, system: System, takeoff_altitude: float, on_offboard: Callable[[bool, str], None]
-    ) -> None:
+    def __init__(self, system: System, takeoff_altitude: float) -> None:
         self._action = Action(system)
         self._offboard = Offboard(system)
         self._takeoff_altitude = takeoff_altitude
-        self._on_offboard = on_offboard
         self._acts: dict[CommandKind, Callable[[Callable[[ActionResult, object], None]], None]] = {
             CommandKind.ARM: self._action.arm_async,
             CommandKind.DISARM: self._action.disarm_async,
@@ -74,6 +81,7 @@ class Commander:
             CommandKind.KILL: self._action.kill_async,
         }
         self.answers: queue.SimpleQueue[Answer] = queue.SimpleQueue()
+        self.offboard_answers: queue.SimpleQueue[OffboardAnswer] = queue.SimpleQueue()
 
     def do(self, kind: CommandKind, number: int = 0) -> None:
         """Send a command. Number 0 is the program's own act, others are the operator's."""
@@ -106,4 +114,5 @@ class Commander:
         self._action.set_takeoff_altitude_async(self._takeoff_altitude, altitude_set)
 
     def _on_started(self, result: OffboardResult, _: object) -> None:
-        self._on_offboard(result is OffboardResult.SUCCESS, result.name.replace("_", " ").lower())
+        ok, heard = result is OffboardResult.SUCCESS, result is not OffboardResult.TIMEOUT
+        self.offboard_answers.put(OffboardAnswer(ok, heard, result.name.replace("_", " ").lower()))

@@ -93,7 +93,6 @@ class Link:
         self._status = VehicleStatus(rtt=math.nan, battery=math.nan, voltage=math.nan)
         self._view = VehicleView(notes, time.monotonic)
         self._stream = OffboardStream(run.settings.safety.setpoint_stale_s)
-        self._offboard_answers: queue.SimpleQueue[tuple[bool, str]] = queue.SimpleQueue()
         self._commander: Commander | None = None
         self._round_trip: RoundTrip | None = None
         self._obstacles: ObstacleView | None = None
@@ -143,7 +142,7 @@ class Link:
     def _attach(self, system: System) -> None:
         mission = self._run.mission
         altitude = mission.takeoff_altitude_m if mission else _DEFAULT_TAKEOFF_M
-        self._commander = Commander(system, altitude, lambda ok, why: self._offboard_answers.put((ok, why)))
+        self._commander = Commander(system, altitude)
         self._round_trip = RoundTrip(system, time.monotonic)
         self._obstacles = ObstacleView(system, self._view.yaw, self._notes, time.monotonic)
         self._view.attach(system, self._run.settings.rates.telemetry)
@@ -198,12 +197,13 @@ class Link:
                 self._bus.event(
                     Severity.ALARM, f"The vehicle was told to hold, but {why}; its own failsafe remains."
                 )
-        while not self._offboard_answers.empty():
-            ok, why = self._offboard_answers.get()
+        while commander and not commander.offboard_answers.empty():
+            ok, heard, why = commander.offboard_answers.get()
             if ok:
                 self._stream.accepted(now)
             elif self._stream.state is Stream.STARTING:
-                self._do(*self._stream.refused(self._with_reason(why, now)))
+                stream = self._stream
+                self._do(*(stream.refused(self._with_reason(why, now)) if heard else stream.unanswered()))
 
     def _answer(self, number: int, kind: CommandKind, *, ok: bool, text: str, now: float) -> None:
         words = "" if ok else f"{kind.name.capitalize()} refused: {self._with_reason(text, now)}."

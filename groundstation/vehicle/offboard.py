@@ -95,6 +95,10 @@ class OffboardStream:
         """The vehicle denied offboard."""
         return self._end(Act.CLOSE, f"offboard refused: {why}")
 
+    def unanswered(self) -> tuple[Act, str]:
+        """The vehicle did not say whether it went to offboard; it may have."""
+        return self._end(Act.CLOSE_AND_HOLD, "the vehicle did not answer to offboard; it holds")
+
     def _starting(self, seen: Seen) -> tuple[Act, str]:
         if not self._asked:
             self._asked = seen.now - self._started_t >= LEAD_S

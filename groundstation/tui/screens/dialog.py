@@ -14,7 +14,7 @@ from textual.widgets import Static
 
 from groundstation.messages import CommandKind
 from groundstation.tui.acts import ACTS, BY_NAME
-from groundstation.tui.choices import CHOICES
+from groundstation.tui.choices import CHOICES, CUES
 from groundstation.tui.screens.flight import STEPS
 from groundstation.tui.theme import STYLES, Tone
 
@@ -104,10 +104,11 @@ def help_table() -> Table:
         table.add_row(act.key, act.label, act.explains)
     _section(table, "choices", "at any time")
     for choice in CHOICES:
-        if choice.kind is CommandKind.CUES:
-            table.add_row(choice.key, choice.name, f"{choice.explains} On or off.")
-        else:
+        if choice.kind is not CommandKind.CUES:
             table.add_row(choice.key, choice.label, choice.explains)
+    _section(table, "cues", "parts of the force; on, or off again")
+    for choice in CUES.values():
+        table.add_row(choice.key, choice.name, choice.explains)
     _section(table, "stick", "on the screen; steps of 20 % that stay")
     arrows = {"up": "↑", "down": "↓", "left": "←", "right": "→"}
     for key, _, _, words in STEPS:

@@ -6,7 +6,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Iterator
-from math import hypot, nan
+from math import hypot, nan, radians
 from pathlib import Path
 
 import pytest
@@ -29,8 +29,11 @@ from groundstation.messages import (
     VEHICLE_STATUS,
     Command,
     CommandKind,
+    Cue,
     FlightMode,
+    MappingMode,
     Phase,
+    Preset,
     Severity,
     Stream,
     VehicleState,
@@ -44,8 +47,10 @@ from groundstation.run_folder import new_run_id, sweep
 DT = 0.001
 
 
-def make_run(run_id: str, device: str) -> Run:
-    return Run(run_id, "udpin://127.0.0.1:0", True, device, None, "", Settings(), "", "", "")
+def make_run(run_id: str, device: str, controller: str = "paper") -> Run:
+    return Run(
+        run_id, "udpin://127.0.0.1:0", True, device, None, "", Settings(), "", "", "", controller=controller
+    )
 
 
 class World:
@@ -75,9 +80,9 @@ class World:
     def confirm(self, mode: FlightMode = FlightMode.OFFBOARD, stream: Stream = Stream.FLYING) -> None:
         self.status.mode, self.status.streaming = mode, stream
 
-    def command(self, kind: CommandKind, now: float) -> int:
+    def command(self, kind: CommandKind, now: float, value: int = 0) -> int:
         self.number += 1
-        self._commands.send(Command(t=now, number=self.number, kind=kind, source=b"test"))
+        self._commands.send(Command(t=now, number=self.number, kind=kind, value=value, source=b"test"))
         return self.number
 
     def close(self) -> None:
@@ -88,10 +93,10 @@ class World:
 class Bench:
     """A servo in virtual time."""
 
-    def __init__(self, tmp_path: Path) -> None:
+    def __init__(self, tmp_path: Path, controller: str = "paper") -> None:
         self.now = 1000.0
         self.run_id = new_run_id()
-        self.run_ = make_run(self.run_id, "")
+        self.run_ = make_run(self.run_id, "", controller)
         write_run(self.run_)
         socket = str(tmp_path / "hand.sock")
         self.world = World(self.run_id, socket)
@@ -99,13 +104,14 @@ class Bench:
         self.device = VirtualHandle(socket, lambda: self.now)
         self.servo = Servo(self.run_, self.bus, self.device, lambda: self.now, lambda work: work())
         self.stick: tuple[float, float, float] | None = (0.0, 0.0, 0.0)
+        self.buttons = 0
         self.vehicle = True
 
     def run(self, seconds: float) -> None:
         for tick in range(round(seconds / DT)):
             self.now += DT
             if self.stick is not None and tick % 10 == 0:
-                self.world.stick.send(self.stick, 0.0, 0, self.now)
+                self.world.stick.send(self.stick, 0.0, self.buttons, self.now)
             if self.vehicle and tick % 20 == 0:
                 self.world.say(self.now)
             self.servo.tick(self.now, DT)
@@ -310,6 +316,113 @@ def test_nothing_that_is_not_a_number_reaches_the_bus(bench: Bench) -> None:
     for numbers in (state.p_h, state.p_h_rate, state.error, state.v_ref, state.force):
         assert all(number == number for number in numbers)
     assert state.state_age > 0.05
+
+
+def test_choices_are_commands_that_are_answered_and_shown(bench: Bench) -> None:
+    bench.engage()
+    for kind, value in (
+        (CommandKind.MAPPING, MappingMode.POSITION),
+        (CommandKind.FINE, 1),
+        (CommandKind.CLUTCH, 1),
+        (CommandKind.PRESET, Preset.TRAINING),
+        (CommandKind.CUES, Cue.POSITION | Cue.DAMPING),
+    ):
+        number = bench.world.command(kind, bench.now, value)
+        bench.run(0.05)
+        answer = list(bench.world.answers.drain())[-1]
+        assert (answer.number, answer.kind, bool(answer.ok)) == (number, kind, True)
+    state = bench.world.pilots.newest()
+    assert (state.mapping, state.preset, state.cues) == (MappingMode.POSITION, Preset.TRAINING, 17)
+    assert (state.fine, state.clutched) == (1, 1)
+    assert bench.phase() is Phase.ENGAGED
+    bench.world.command(CommandKind.PRESET, bench.now, 9)
+    bench.run(0.05)
+    refused = list(bench.world.answers.drain())[-1]
+    assert not refused.ok
+    assert refused.text == b"there is no preset 9"
+
+
+def test_the_handle_s_buttons_clutch_and_switch(bench: Bench) -> None:
+    bench.engage()
+    bench.buttons = 0b10001
+    bench.run(0.1)
+    state = bench.world.pilots.newest()
+    assert (state.clutched, state.mapping) == (1, MappingMode.POSITION)
+    bench.buttons = 0
+    bench.run(0.1)
+    state = bench.world.pilots.newest()
+    assert (state.clutched, state.mapping) == (0, MappingMode.POSITION)
+
+
+def test_gains_margin_and_forecast_are_published_as_the_measured_round_trip_has_them(bench: Bench) -> None:
+    bench.world.status.rtt = 0.7
+    bench.engage()
+    bench.stick = (0.05, 0.0, 0.0)
+    bench.run(0.5)
+    state = bench.world.pilots.newest()
+    assert state.delay == pytest.approx(0.7)
+    assert state.k1[0] < Settings().control.k1[0]
+    assert state.phase_margin == pytest.approx(radians(45), abs=1e-3)
+    assert state.speed_share < 1.0
+    # The model flies on what has been sent, while this vehicle stands.
+    assert state.predicted[0] > 1.0
+    assert state.stop[0] > state.predicted[0]
+
+
+@pytest.mark.parametrize(
+    ("field", "value", "words"),
+    [
+        ("rtt", 1.5, "the round trip of 1.5 s is too long"),
+        ("loss", 0.9, "90% of the vehicle's frames are lost"),
+    ],
+)
+def test_too_poor_a_link_lets_go_and_does_not_couple_again(
+    bench: Bench, field: str, value: float, words: str
+) -> None:
+    bench.engage()
+    setattr(bench.world.status, field, value)
+    bench.run(0.1)
+    assert bench.phase() is Phase.DISENGAGED
+    assert any(words in text for _, text in bench.said())
+    setattr(bench.world.status, field, 0.05)
+    bench.run(0.5)
+    assert bench.phase() is Phase.DISENGAGED
+
+
+FAILING = """
+class Fails:
+    def __init__(self, settings): ...
+    def start(self): return 0
+    def step(self, state, view):
+        if state == 300:
+            raise ZeroDivisionError("by nothing")
+        from groundstation.pilot.controller import Law
+        return state + 1, Law((0.5, 0.0, 0.0, 0.0), (1.0, 0.0, 0.0))
+"""
+
+
+def test_a_controller_that_fails_in_flight_ends_in_a_hold_and_words(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "failing_in_flight.py").write_text(FAILING)
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(sys, "path", [*sys.path])
+    bench = Bench(tmp_path, "failing_in_flight:Fails")
+    try:
+        bench.engage()
+        bench.run(0.1)
+        flying = bench.world.setpoints.newest()
+        assert flying.active
+        assert flying.velocity[0] > 0.1
+        bench.run(0.5)
+        assert bench.phase() is Phase.DISENGAGED
+        assert not bench.world.setpoints.newest().active
+        assert list(bench.world.setpoints.newest().velocity) == [0.0] * 4
+        assert list(bench.world.handles.newest().force) == [0.0] * 3
+        said = "Disengaged: the controller failing_in_flight:Fails failed (ZeroDivisionError: by nothing)."
+        assert (Severity.ALARM, said) in bench.said()
+    finally:
+        bench.close()
 
 
 def test_the_reports_tell_device_and_timing_and_the_idle_setpoint_is_inactive(bench: Bench) -> None:

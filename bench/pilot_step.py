@@ -18,7 +18,7 @@ from groundstation.pilot.inputs import Inputs
 from groundstation.pilot.pilot import Memory, Pilot
 from groundstation.pilot.sight import VehicleSample
 from groundstation.pilot.surroundings import Surroundings
-from sim.airframe import load_airframe
+from sim.airframe import MODELS, load_airframe
 from sim.scenario import Box, Cylinder, Obstacle, Sphere
 
 BAR_US = 80.0
@@ -61,7 +61,8 @@ class Turn:
             if self._tick % 20 == 0:
                 a = 0.5 * t
                 self._sample = VehicleSample(
-                    (1.5 * cos(a), 1.5 * sin(a), 2.0, 0.2 * t % 3.0), (-0.75 * sin(a), 0.75 * cos(a), 0.0, 0.2)
+                    (1.5 * cos(a), 1.5 * sin(a), 2.0, 0.2 * t % 3.0),
+                    (-0.75 * sin(a), 0.75 * cos(a), 0.0, 0.2),
                 )
             place = (0.07 * cos(0.7 * t), 0.06 * sin(0.9 * t), 0.03 * sin(0.4 * t))
             motion = (-0.049 * sin(0.7 * t), 0.054 * cos(0.9 * t), 0.012 * cos(0.4 * t))
@@ -80,6 +81,7 @@ class Turn:
 def main(*, short: bool) -> Iterator[str]:
     """Yield the table."""
     yield f"20 obstacles, 2 sensed points, χ compensated, 0.1 s round trip; bar: {BAR_US:.0f} µs p50"
+    yield f"yardstick: a step of the rigid body in plain Python takes {1e6 * yardstick():.1f} µs p50 at this moment"
     for preset in Preset:
         turn, durations = Turn(preset), list[float]()
         turn.run(2_000)
@@ -87,6 +89,18 @@ def main(*, short: bool) -> Iterator[str]:
         p50, p90, p99 = (1e6 * percentile(durations, share) for share in (0.5, 0.9, 0.99))
         yield f"{preset.name.lower():<12} {p50:6.1f} µs p50 {p90:7.1f} p90 {p99:7.1f} p99"
     yield from _growth(100_000 if short else 10_000_000)
+
+
+def yardstick(steps: int = 5_000) -> float:
+    """Return what a step of the simulator's rigid body takes now, s: what this machine is worth at the moment."""
+    motion = MODELS["rigid_body"](load_airframe("x500"))
+    p, v = (0.0, 0.0, 20.0, 0.0), (0.0, 0.0, 0.0, 0.0)
+    durations: list[float] = []
+    for _ in range(steps):
+        begin = time.perf_counter()
+        p, v = motion.step(p, v, (1.0, 0.5, 0.0, 0.3), (0.0, 0.0, 0.0), 4.0 * DT)
+        durations.append(time.perf_counter() - begin)
+    return percentile(durations, 0.5)
 
 
 def _growth(ticks: int) -> Iterator[str]:

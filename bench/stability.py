@@ -55,7 +55,12 @@ class Sweeper:
         if since > SWEEP_S:
             return Displacement((0.0, 0.0, 0.0), 0.0)
         fade = min(1.0, since / 2.0, (SWEEP_S - since) / 2.0)
-        waves = (1.2 * sin(0.6 * since), sin(0.9 * since + 0.5), 0.4 * sin(0.5 * since), 0.3 * sin(0.4 * since))
+        waves = (
+            1.2 * sin(0.6 * since),
+            sin(0.9 * since + 0.5),
+            0.4 * sin(0.5 * since),
+            0.3 * sin(0.4 * since),
+        )
         if self._by_place:
             reach = 0.6 * self._workspace * fade
             return Displacement((reach * waves[0], reach * waves[1], reach * waves[2]), 0.0)
@@ -66,9 +71,7 @@ class Sweeper:
 def fly(case: tuple[str, str, str, float], rate: float = 250.0) -> Told:
     """Fly a preset, mapping and passivity over a round trip, s."""
     preset, mode, passivity, delay = case
-    settings = Settings(
-        control=Control(preset=preset, passivity=passivity), mapping=Mapping(mode=mode)
-    )  # pyright: ignore[reportArgumentType]
+    settings = Settings(control=Control(preset=preset, passivity=passivity), mapping=Mapping(mode=mode))  # pyright: ignore[reportArgumentType]
     channel = Conditions(delay=0.5 * delay)
     seen: list[tuple[float, float, float, float]] = []
 

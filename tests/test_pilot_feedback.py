@@ -10,8 +10,8 @@ from groundstation.messages import Cue, Preset
 from groundstation.pilot.choices import ALL_CUES
 from groundstation.pilot.controller import position_force
 from groundstation.pilot.feedback import CueForces, Feedback, Felt, hand_force
-from groundstation.pilot.nearby import Near
 from groundstation.pilot.presets import PRESETS, Weights
+from groundstation.pilot.shield.nearby import Near
 
 vectors = st.tuples(*[st.floats(-100, 100)] * 3)
 EACH = Weights(1.0, 1.0, 1.0, 1.0, 1.0)

@@ -10,11 +10,12 @@ from hypothesis import strategies as st
 
 from drivers.device import ZERO3
 from groundstation.config import Limits, Shield
-from groundstation.pilot.halfspaces import nearest_within
 from groundstation.pilot.margin import COMPENSATED, lags_of
-from groundstation.pilot.nearby import Candidates, Near, Neighbourhood, nearest
-from groundstation.pilot.risk_field import RiskField
-from groundstation.pilot.shield import Barrier, Off, Situation
+from groundstation.pilot.shield.barrier import Barrier
+from groundstation.pilot.shield.guard import Off, Situation
+from groundstation.pilot.shield.halfspaces import nearest_within
+from groundstation.pilot.shield.nearby import Candidates, Near, Neighbourhood, nearest
+from groundstation.pilot.shield.risk_field import RiskField
 from groundstation.pilot.surroundings import Surroundings
 from groundstation.training.mission import Fence
 from sim.airframe import load_airframe

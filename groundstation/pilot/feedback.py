@@ -23,8 +23,8 @@ from drivers.vectors import within
 from groundstation import config
 from groundstation.frames import body_from_world
 from groundstation.messages import Cue
-from groundstation.pilot.nearby import Near
 from groundstation.pilot.presets import Weights
+from groundstation.pilot.shield.nearby import Near
 
 # Plain numbers: flags of an enumeration are slow to combine.
 _POSITION, _ENVIRONMENT, _MISMATCH, _GUARD, _DAMPING = (int(cue) for cue in Cue)

@@ -29,10 +29,10 @@ from groundstation.messages import (
     fit,
 )
 from groundstation.pilot.choices import Choices
-from groundstation.pilot.command import Commanded
 from groundstation.pilot.inputs import Inputs
 from groundstation.pilot.lateness import Figures
 from groundstation.pilot.pilot import Outputs
+from groundstation.pilot.setpoint import Commanded
 
 _NAME, _RENDERS = 64, 16
 _UNKNOWN4 = (nan, nan, nan, nan)

@@ -14,7 +14,6 @@ from drivers.vectors import slewed
 from groundstation.config import Settings
 from groundstation.frames import Vector4
 from groundstation.messages import MappingMode, Phase
-from groundstation.pilot.command import Commanded, Commander, Commanding, Terms
 from groundstation.pilot.controller import (
     Controller,
     Law,
@@ -29,12 +28,13 @@ from groundstation.pilot.forecast import Forecast, Forecaster, noted
 from groundstation.pilot.guest import ControllerError
 from groundstation.pilot.inputs import Inputs
 from groundstation.pilot.link_state import shares
-from groundstation.pilot.nearby import nearest
 from groundstation.pilot.passivity.choice import passivity_named
 from groundstation.pilot.passivity.gains import Gains, passive_gains
 from groundstation.pilot.passivity.port import Port
 from groundstation.pilot.presets import PRESETS
 from groundstation.pilot.reference import Reference, ReferenceGenerator
+from groundstation.pilot.setpoint import Commanded, Commanding, SetpointMaker, Terms
+from groundstation.pilot.shield.nearby import nearest
 from groundstation.pilot.sight import ZERO4, Sight, VehicleSample, look
 from groundstation.pilot.surroundings import NOTHING_KNOWN, Surroundings
 
@@ -168,7 +168,7 @@ class Pilot:
         self._references = ReferenceGenerator(settings.mapping, settings.limits, device.workspace)
         self._forecaster = Forecaster(surroundings.chi)
         self._controller: Controller = controller or PaperController()
-        self._commander = Commander(settings, surroundings)
+        self._setpoints = SetpointMaker(settings, surroundings)
 
     def step(self, memory: Memory, inputs: Inputs) -> tuple[Memory, Outputs]:
         """Run one tick.
@@ -201,7 +201,7 @@ class Pilot:
 
     def stop(self, outputs: Outputs) -> Vector3:
         """Return where the vehicle would come to rest if the handle went to its centre now, world, m."""
-        return self._commander.stop(outputs.forecast, compensated=outputs.commanded.compensated)
+        return self._setpoints.stop(outputs.forecast, compensated=outputs.commanded.compensated)
 
     def _fault(self, inputs: Inputs, seen: VehicleSample | None) -> str:
         """Return in words why nothing can be flown on these inputs, or "".
@@ -234,7 +234,7 @@ class Pilot:
         view = self._view(inputs, reference, p, forecast, terms)
         state = memory.state if memory.coupled else self._controller.start()
         state, law = self._controller.step(state, view)
-        commanding, commanded = self._commander.step(memory.commanding, law.v_ref, forecast, inputs, terms)
+        commanding, commanded = self._setpoints.step(memory.commanding, law.v_ref, forecast, inputs, terms)
         cues = self._cues(inputs, law, commanded, p[3], terms)
         presence, wanted = self._rendered(memory.presence, port.force, inputs, cues, p[3])
         port = self._held(port, wanted, inputs)
@@ -255,7 +255,7 @@ class Pilot:
         delay = inputs.delay if isfinite(inputs.delay) else link.assumed_delay_s
         assistance = PRESETS[preset]
         left = shares(inputs.delay, inputs.loss, link)
-        loop = self._commander.loop(known, delay, assistance)
+        loop = self._setpoints.loop(known, delay, assistance)
         told = (inputs.delay, inputs.loss, preset)
         return Terms(told, delay, assistance, loop, left.gain, left.speed * assistance.speed)
 

@@ -2,14 +2,16 @@
 
 Rate: how far the handle is out of its centre says how fast p_h moves. Position: p_h moves as the handle does, scaled;
 what counts is how far it has moved since the last tick, so that the clutch, a switch of the mapping, of fine or of
-the frame, or the leash, changes p_h by nothing. ṗ_h of rate mode is itself kept within the limits of acceleration and
-jerk: p_h moves as a drone can.
+the frame, or the leash, changes p_h by nothing. ṗ_h of rate mode is itself kept within the limit of acceleration: p_h
+moves as a drone can.
 """
 
 from __future__ import annotations
 
-from math import hypot
+from math import hypot, sqrt
 from typing import NamedTuple
+
+from msgspec import structs
 
 from drivers.device import ZERO3, HandleState, Vector3
 from groundstation import config
@@ -17,7 +19,6 @@ from groundstation.frames import Vector4
 from groundstation.messages import MappingMode
 from groundstation.pilot.choices import Choices
 from groundstation.pilot.controller import world_rates
-from groundstation.pilot.limits import SetpointLimiter, SetpointMotion
 from groundstation.pilot.mapping import RateMapping, advance, leashed
 from groundstation.pilot.sight import ZERO4
 
@@ -32,7 +33,7 @@ class Reference(NamedTuple):
         p_h: Where the hand wants the drone, world, m and rad.
         rate: ṗ_h, world, m/s and rad/s.
         on_leash: p_h wanted to go further from the vehicle than it may.
-        motion: The part of ṗ_h by rate, world.
+        by_rate: The part of ṗ_h by rate, world, m/s and rad/s.
         handle: Where the handle was, m.
         mapping: As it was.
         waiting: The handle moves nothing until it has been in its centre.
@@ -41,7 +42,7 @@ class Reference(NamedTuple):
     p_h: Vector4 = ZERO4
     rate: Vector4 = ZERO4
     on_leash: bool = False
-    motion: SetpointMotion = SetpointMotion()
+    by_rate: Vector4 = ZERO4
     handle: Vector3 = ZERO3
     mapping: MappingMode = MappingMode.RATE
     waiting: bool = False
@@ -60,9 +61,9 @@ class ReferenceGenerator:
     """
 
     def __init__(self, mapping: config.Mapping, limits: config.Limits, workspace: float) -> None:
-        self.by_rate = RateMapping(mapping, workspace)
+        self.by_rate = RateMapping(bounded(mapping, limits), workspace)
         self._settings = mapping
-        self._limiter = SetpointLimiter(limits)
+        self._acceleration, self._yaw_acceleration = limits.acceleration, limits.yaw_acceleration
         self._centre = max(mapping.deadband, _LEAST_CENTRE) * workspace
 
     def begun(self, p: Vector4, hand: HandleState, choices: Choices) -> Reference:
@@ -85,17 +86,17 @@ class ReferenceGenerator:
         by_rate = choices.mapping is MappingMode.RATE
         waiting = by_rate and self._waits(before, hand, choices)
         asked = self._asked(hand, choices, p[3], share, still=waiting or not by_rate)
-        begin = before.motion
+        begin = before.by_rate
         if before.on_leash and _gives_way(asked, before.p_h, p):
             # The leash has stopped p_h, so there is no motion to brake: giving way counts at once.
-            begin = SetpointMotion(yaw=begin.yaw)
-        motion, rate = self._limiter.step(begin, asked, dt)
+            begin = (0.0, 0.0, 0.0, begin[3])
+        moved = rate = towards(begin, asked, self._acceleration * dt, self._yaw_acceleration * dt)
         wished = advance(before.p_h, rate, dt)
         if not by_rate and not choices.clutched:
             step, speed = self._moved(before, hand, choices, p[3])
             wished, rate = added(wished, step), added(rate, speed)
         p_h, on_leash = leashed(wished, p, self._settings.leash, self._settings.leash_yaw)
-        return Reference(p_h, rate, on_leash, motion, hand.position, choices.mapping, waiting)
+        return Reference(p_h, rate, on_leash, moved, hand.position, choices.mapping, waiting)
 
     def _waits(self, before: Reference, hand: HandleState, choices: Choices) -> bool:
         """Say whether rate mode has yet to be taken hold of, in the centre."""
@@ -127,6 +128,28 @@ class ReferenceGenerator:
         turn = self.by_rate.turn(yaw)
         step = world_rates(((x - a) * i, (y - b) * j, (z - c) * k, 0.0), turn)
         return step, world_rates((u * i, v * j, w * k, 0.0), turn)
+
+
+def bounded(mapping: config.Mapping, limits: config.Limits) -> config.Mapping:
+    """Return a mapping whose speeds are within those that setpoints keep to, so that p_h runs away from no drone."""
+    x, y, z, yaw = mapping.speed
+    level, up, turn = limits.horizontal_speed, limits.vertical_speed, limits.yaw_rate
+    return structs.replace(mapping, speed=(min(x, level), min(y, level), min(z, up), min(yaw, turn)))
+
+
+def towards(rate: Vector4, asked: Vector4, step: float, yaw_step: float) -> Vector4:
+    """Move a velocity towards another by at most `step` in the plane and upward, and `yaw_step`, m/s and rad/s."""
+    x, y, z, turn = rate
+    east, north = asked[0] - x, asked[1] - y
+    plane = sqrt(east * east + north * north)
+    share = step / plane if plane > step else 1.0
+    up, around = asked[2] - z, asked[3] - turn
+    return (
+        x + share * east,
+        y + share * north,
+        z + max(-step, min(step, up)),
+        turn + max(-yaw_step, min(yaw_step, around)),
+    )
 
 
 def _gives_way(asked: Vector4, p_h: Vector4, p: Vector4) -> bool:

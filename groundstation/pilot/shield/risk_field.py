@@ -12,7 +12,7 @@ from math import cos, pi, sin
 
 from groundstation import config
 from groundstation.frames import Vector4
-from groundstation.pilot.shield import Guarded, Situation
+from groundstation.pilot.shield.guard import Guarded, Situation
 
 # Looked ahead by so long, s, and faded out over so much beyond the critical region, m.
 _AHEAD_S = 0.3

@@ -14,10 +14,11 @@ from groundstation.pilot.forecast import Forecast
 from groundstation.pilot.inputs import Inputs
 from groundstation.pilot.limits import SetpointLimiter, SetpointMotion
 from groundstation.pilot.margin import COMPENSATED, USUAL_LAGS, Lags, Loop, lags_of, loop_for
-from groundstation.pilot.nearby import Candidates, Near, Neighbourhood
 from groundstation.pilot.presets import Assistance
-from groundstation.pilot.risk_field import RiskField
-from groundstation.pilot.shield import Barrier, Guard, Off, Situation
+from groundstation.pilot.shield.barrier import Barrier
+from groundstation.pilot.shield.guard import Guard, Off, Situation
+from groundstation.pilot.shield.nearby import Candidates, Near, Neighbourhood
+from groundstation.pilot.shield.risk_field import RiskField
 from groundstation.pilot.sight import ZERO4
 from groundstation.pilot.surroundings import Surroundings
 
@@ -85,7 +86,7 @@ class Commanded(NamedTuple):
     compensated: bool = False
 
 
-class Commander:
+class SetpointMaker:
     """Makes setpoints.
 
     Args:

@@ -14,14 +14,13 @@ and a speed that is too high already, are held against.
 from __future__ import annotations
 
 from math import cos, sin, sqrt
-from typing import NamedTuple, Protocol
 
-from drivers.device import Vector3
 from groundstation import config
 from groundstation.frames import Vector4
-from groundstation.pilot.halfspaces import Halfspace, nearest_within
 from groundstation.pilot.margin import Lags
-from groundstation.pilot.nearby import Near
+from groundstation.pilot.shield.guard import Guarded, Situation
+from groundstation.pilot.shield.halfspaces import Halfspace, nearest_within
+from groundstation.pilot.shield.nearby import Near
 
 # Out of a margin that was entered all the same, at so much a metre and at most so fast, 1/s and m/s.
 _RETREAT, _RETREAT_SPEED = 1.0, 0.4
@@ -30,46 +29,6 @@ _AGAINST = 1.0
 # The setpoint is sent at 50 Hz: on average it waits half of that.
 _SENDING_S = 0.02
 _FELT = 1e-3
-
-
-class Situation(NamedTuple):
-    """What a guard looks at.
-
-    Attributes:
-        near: What is near where the vehicle will be.
-        velocity: The vehicle's then, world, m/s.
-        yaw: Its yaw then, rad.
-        push: Disturbing acceleration, world, m/s².
-    """
-
-    near: tuple[Near, ...]
-    velocity: Vector3
-    yaw: float
-    push: Vector3
-
-
-class Guarded(NamedTuple):
-    """What a guard makes of a velocity.
-
-    Attributes:
-        velocity: The one that may be flown, vehicle's axes, m/s and rad/s.
-        by: What it keeps away from, or "" where nothing was changed.
-    """
-
-    velocity: Vector4
-    by: str = ""
-
-
-class Guard(Protocol):
-    """Makes a velocity safe."""
-
-    def reach(self, speed: float) -> float:
-        """Return the gap up to which things matter at a speed, m/s; m."""
-        ...
-
-    def guard(self, wanted: Vector4, situation: Situation) -> Guarded:
-        """Return the velocity nearest to the wanted one that is safe; vehicle's axes, m/s and rad/s."""
-        ...
 
 
 class Barrier:
@@ -140,15 +99,3 @@ class Barrier:
             return max(_RETREAT * gap, -_RETREAT_SPEED)
         braking = self._braking
         return braking * (sqrt(reaction * reaction + 2.0 * gap / braking) - reaction)
-
-
-class Off:
-    """No guard: everything that is wanted is flown."""
-
-    def reach(self, speed: float) -> float:  # noqa: ARG002
-        """Return 0: nothing matters."""
-        return 0.0
-
-    def guard(self, wanted: Vector4, situation: Situation) -> Guarded:  # noqa: ARG002
-        """Return what is wanted."""
-        return Guarded(wanted)

@@ -1,7 +1,7 @@
 """Full-stick adversaries through obstacle fields, the same seeds with the barrier, without it, and with a risk field.
 
-Each run has a field, an adversary, a round trip from 0 to 0.3 s and a wind of its own. The vehicle is the identified
-Matrice 100, whose response the pilot knows; then a rigid body with PX4's cascade, whose response it does not know. Who
+Each run has a field, an adversary, a round trip from 0 to 0.3 s and a wind of its own. The vehicle is the
+identified Matrice 100, whose response the pilot knows; then a rigid body with PX4's cascade, whose it does not. Who
 loses sight of the vehicle is uncoupled as in flight. A run counts as one with collisions when the vehicle touched
 anything, the ground included; it ends early when its motors stop.
 """

@@ -15,6 +15,7 @@ from __future__ import annotations
 
 from math import cos, sin, sqrt
 
+from drivers.device import Vector3
 from groundstation import config
 from groundstation.frames import Vector4
 from groundstation.pilot.margin import Lags
@@ -45,7 +46,10 @@ class Barrier:
         self._braking = settings.braking * limits.acceleration
         # From full acceleration towards a thing to full braking takes 2 a / j; half of that is lost.
         self._jerk_s = limits.acceleration / limits.jerk
-        self._lags = lags
+        forward, left, up = lags[:3]
+        self._gains = (forward.gain, left.gain, up.gain)
+        self._times = (forward.time, left.time, up.time)
+        self._delay_s = _SENDING_S + self._jerk_s
         self._gain = max(1.0, *(lag.gain for lag in lags[:3]))
         self._slowest_s = _SENDING_S + self._jerk_s + max(lag.time for lag in lags[:3])
 
@@ -57,13 +61,16 @@ class Barrier:
     def guard(self, wanted: Vector4, situation: Situation) -> Guarded:
         """Return the velocity nearest to the wanted one that is safe; vehicle's axes, m/s and rad/s."""
         forward, left, up, turn = wanted
+        near, velocity, yaw, push = situation
         planes: list[Halfspace] = []
         by, worst = "", _FELT
-        c, s = cos(situation.yaw), sin(situation.yaw)
-        for thing in situation.near:
-            plane = self._plane(thing, situation, c, s)
-            (a, b, d), offset = plane
+        c, s = cos(yaw), sin(yaw)
+        for thing in near:
+            nx, ny, nz = thing.normal
+            away = (c * nx + s * ny, c * ny - s * nx, nz)
+            plane = self._plane(thing, away, _along(thing.normal, velocity), _along(thing.normal, push))
             planes.append(plane)
+            (a, b, d), offset = plane
             excess = offset - (a * forward + b * left + d * up)
             if excess > worst:
                 by, worst = thing.name, excess
@@ -74,22 +81,26 @@ class Barrier:
         x, y, z = found if found is not None else (0.0, 0.0, 0.0)
         return Guarded((x, y, z, turn), by)
 
-    def _plane(self, thing: Near, situation: Situation, c: float, s: float) -> Halfspace:
-        """Return the half-space of setpoints, vehicle's axes, that one thing leaves."""
-        (nx, ny, nz), (x, y, z), (px, py, pz) = thing.normal, situation.velocity, situation.push
-        along, across = c * nx + s * ny, c * ny - s * nx
-        f, lateral, vertical = self._lags[0], self._lags[1], self._lags[2]
-        a, b, d = f.gain * along, lateral.gain * across, vertical.gain * nz
-        lag = f.time * along * along + lateral.time * across * across + vertical.time * nz * nz
-        reaction = _SENDING_S + self._jerk_s + lag
-        bound = self._speed(thing.gap - (self._margin if thing.solid else 0.0), reaction)
+    def _plane(self, thing: Near, away: Vector3, leaving: float, pushed: float) -> Halfspace:
+        """Return the half-space of setpoints, vehicle's axes, that one thing leaves.
+
+        Args:
+            thing: To keep away from.
+            away: Unit vector away from it, vehicle's axes.
+            leaving: Speed away from it, m/s.
+            pushed: Disturbing acceleration away from it, m/s².
+        """
+        (x, y, z), (p, q, r), (i, j, k) = away, self._gains, self._times
+        lag = i * x * x + j * y * y + k * z * z
+        gap = thing.gap - self._margin if thing.solid else thing.gap
+        bound = self._speed(gap, self._delay_s + lag)
         # The wind's push shifts the velocity by push · lag; only one towards the thing is held against.
-        blown = -(nx * px + ny * py + nz * pz) * lag
-        if blown > 0.0:
-            bound -= blown
-        too_fast = -(nx * x + ny * y + nz * z) - max(bound, 0.0)
+        if pushed < 0.0:
+            bound += pushed * lag
+        too_fast = -leaving - max(bound, 0.0)
         if too_fast > 0.0:
             bound -= _AGAINST * too_fast
+        a, b, d = p * x, q * y, r * z
         size = sqrt(a * a + b * b + d * d)
         return (a / size, b / size, d / size), -bound / size
 
@@ -99,3 +110,7 @@ class Barrier:
             return max(_RETREAT * gap, -_RETREAT_SPEED)
         braking = self._braking
         return braking * (sqrt(reaction * reaction + 2.0 * gap / braking) - reaction)
+
+
+def _along(direction: Vector3, vector: Vector3) -> float:
+    return direction[0] * vector[0] + direction[1] * vector[1] + direction[2] * vector[2]

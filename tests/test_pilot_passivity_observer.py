@@ -16,11 +16,11 @@ def rendered(energy: float, wanted: Vector3, velocity: Vector3) -> Port:
 
 
 def test_a_force_along_the_motion_is_paid_for_from_the_account() -> None:
-    assert rendered(0.1, (8.0, 0.0, 0.0), (0.2, 0.0, 0.0)).force == (8.0, 0.0, 0.0)
+    assert rendered(0.17, (8.0, 0.0, 0.0), (0.2, 0.0, 0.0)).force == (8.0, 0.0, 0.0)
     poor = rendered(0.0, (8.0, 3.0, 0.0), (0.2, 0.0, 0.0))
-    # 0.4 mJ may be given in the tick: 2 N along 0.2 mm; what is across stays.
-    assert poor.force == pytest.approx((2.0, 3.0, 0.0))
-    assert poor.dissipated == pytest.approx(6.0 * 0.2 * DT)
+    # 0.4 mJ are spent over 0.1 s: 0.02 N along 20 mm; what is across stays.
+    assert poor.force == pytest.approx((0.02, 3.0, 0.0))
+    assert poor.dissipated == pytest.approx(7.98 * 0.2 * DT)
 
 
 def test_an_account_overdrawn_is_damped_as_strongly_as_the_device_can() -> None:

@@ -27,8 +27,8 @@ def rendered(level: float, wanted: Vector3, velocity: Vector3) -> Port:
 @pytest.mark.parametrize("share", [0.1, 0.5, 1.0, 3.0])
 def test_the_damping_grows_as_the_level_sinks_below_the_one_desired(share: float) -> None:
     """By hand: α (H_d − H), an empty tank's being the device's own limit."""
-    force = rendered(share * DESIRED, (2.0, 1.0, 0.0), (0.1, 0.0, 0.0)).force
-    assert force == pytest.approx((2.0 - DAMPING * max(0.0, 1.0 - share) * 0.1, 1.0, 0.0))
+    force = rendered(share * DESIRED, (0.1, 1.0, 0.0), (0.1, 0.0, 0.0)).force
+    assert force == pytest.approx((0.1 - DAMPING * max(0.0, 1.0 - share) * 0.1, 1.0, 0.0))
 
 
 def test_damping_fills_the_tank_and_then_lets_go() -> None:

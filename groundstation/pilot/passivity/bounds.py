@@ -8,8 +8,22 @@ from drivers.device import Vector3
 
 # By no more than this hand or handle accelerate within a tick, m/s² (a force of 10 N on 0.1 kg).
 ACCELERATION = 100.0
+# A budget is not spent in one tick but over so long, s: else a force would come and go with every bit of energy that a
+# hand gives, and buzz.
+SPENT_S = 0.1
 # Slower than this, m/s, the handle has no direction.
 STILL = 1e-9
+
+
+def affordable(budget: float, speed: float, dt: float) -> float:
+    """Return the force along the motion, N, that a budget, J, affords; less than zero repays a debt, at once.
+
+    Args:
+        budget: What may be given, J.
+        speed: Of the handle, m/s, not zero.
+        dt: Of the tick, s.
+    """
+    return budget / (speed * (max(dt, SPENT_S) if budget > 0.0 else dt))
 
 
 def lowered(force: Vector3, velocity: Vector3, speed: float, allowed: float) -> Vector3:

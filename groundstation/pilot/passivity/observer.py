@@ -9,7 +9,7 @@ from __future__ import annotations
 from math import isfinite, sqrt
 
 from drivers.device import ZERO3, Vector3
-from groundstation.pilot.passivity.bounds import STILL, covered, lowered
+from groundstation.pilot.passivity.bounds import STILL, affordable, covered, lowered
 from groundstation.pilot.passivity.port import CREDIT, RESERVE, Port, held
 from groundstation.pilot.passivity.scheme import Passivity
 
@@ -38,6 +38,6 @@ class Observer(Passivity):
         budget = port.energy + CREDIT
         force = wanted
         if speed > STILL:
-            affordable = (budget - RESERVE) / (speed * dt)
-            force = lowered(wanted, velocity, speed, max(affordable, -self._damping_limit * speed))
+            allowed = max(affordable(budget - RESERVE, speed, dt), -self._damping_limit * speed)
+            force = lowered(wanted, velocity, speed, allowed)
         return held(port, covered(force, velocity, dt, budget), wanted, velocity, dt)

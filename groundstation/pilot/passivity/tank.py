@@ -11,7 +11,7 @@ from __future__ import annotations
 from math import isfinite, sqrt
 
 from drivers.device import ZERO3, Vector3
-from groundstation.pilot.passivity.bounds import STILL, covered, lowered, no_longer
+from groundstation.pilot.passivity.bounds import STILL, affordable, covered, lowered, no_longer
 from groundstation.pilot.passivity.port import CREDIT, RESERVE, Port, held
 from groundstation.pilot.passivity.scheme import Passivity
 
@@ -50,5 +50,5 @@ class Tank(Passivity):
         most = self._damping_limit * speed
         filling = most * max(0.0, 1.0 - tank / DESIRED)
         along = (x * u + y * v + z * w) / speed - filling
-        allowed = max(-most, min(along, (tank - RESERVE) / (speed * dt)))
+        allowed = max(-most, min(along, affordable(tank - RESERVE, speed, dt)))
         return no_longer(lowered(wanted, velocity, speed, allowed), wanted, most)

@@ -16,7 +16,7 @@ from __future__ import annotations
 from math import isfinite, sqrt
 
 from drivers.device import ZERO3, Vector3
-from groundstation.pilot.passivity.bounds import STILL, covered, no_longer
+from groundstation.pilot.passivity.bounds import STILL, affordable, covered, no_longer
 from groundstation.pilot.passivity.line import carried, exchanged
 from groundstation.pilot.passivity.port import CREDIT, RESERVE, STORE, Port, held, work
 from groundstation.pilot.passivity.scheme import Passivity
@@ -64,8 +64,8 @@ class Wave(Passivity):
         most = self._impedance * speed
         share = 1.0
         if along > 0.0:
-            affordable = max(0.0, (budget - RESERVE) / (speed * dt) + most)
-            share = min(1.0, affordable / along)
+            allowed = max(0.0, affordable(budget - RESERVE, speed, dt) + most)
+            share = min(1.0, allowed / along)
         damping = min(most, max(0.0, share * along + most)) / speed
         force = (share * x - damping * u, share * y - damping * v, share * z - damping * w)
         return no_longer(force, wanted, most)

@@ -9,7 +9,7 @@ from groundstation.messages import Preset, Severity
 from groundstation.tui.cues import parts
 from groundstation.tui.frame import Frame
 from groundstation.tui.notes import words
-from groundstation.tui.rows import Row, bar, fit, gauge, quantity, width_of
+from groundstation.tui.rows import UNKNOWN, Row, bar, fit, gauge, quantity, width_of
 from groundstation.tui.theme import MARKS, TONES, Tone
 from groundstation.tui.widgets.instrument import Instrument
 
@@ -76,8 +76,10 @@ def _severity(norm: float, limit: float) -> Severity:
 
 def _acting(frame: Frame, width: int) -> Row:
     """Return the cues that act, as many as there is room for."""
+    if frame.pilot is None:
+        return [(f" cues {UNKNOWN}", Tone.FAINT)]
     row: Row = []
-    for part in parts(frame.pilot) if frame.pilot else ():
+    for part in parts(frame.pilot):
         item: Row = [
             (f" {part.name[:_SHORT].upper()} ", Tone.FORCE),
             (quantity(part.norm, "N", 1), Tone.STRONG),

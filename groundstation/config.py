@@ -165,7 +165,9 @@ class Link(Struct, frozen=True, forbid_unknown_fields=True):
         for name in ("delay_s", "loss"):
             good, poor, hold = (getattr(self, f"{word}_{name}") for word in ("good", "poor", "hold"))
             if not good < poor < hold:
-                raise ValueError(f"good_{name}, poor_{name}, hold_{name} must rise; they are {good}, {poor}, {hold}")
+                raise ValueError(
+                    f"good_{name}, poor_{name}, hold_{name} must rise; they are {good}, {poor}, {hold}"
+                )
 
 
 class Limits(Struct, frozen=True, forbid_unknown_fields=True):

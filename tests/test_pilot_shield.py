@@ -108,11 +108,22 @@ def test_floor_ceiling_fence_and_what_the_sensors_see_are_near_too() -> None:
     assert nearest(high) is None
 
 
+def test_what_is_seen_of_a_known_obstacle_is_that_obstacle() -> None:
+    neighbourhood = Neighbourhood(Surroundings(OBSTACLES, 0.4), Shield(floor=0.0))
+    seen = ((-2.4, 0.1, 2.0), (-1.0, -1.5, 2.0))
+    candidates, near = neighbourhood.look(Candidates(), (-1.0, 0.0, 2.0), seen, 2.0)
+    assert sorted(thing.name for thing in near if thing.solid) == ["ball", "sensor"]
+    _, moved = neighbourhood.look(candidates, (-1.2, 0.0, 2.0), seen, 2.0)
+    assert sorted(thing.name for thing in moved if thing.solid) == ["ball", "sensor"]
+
+
 def test_a_mission_s_fence_stands_in_place_of_the_settings() -> None:
     known = Surroundings((), 0.5, fence=Fence(radius=4.0, ceiling=3.0, floor=1.0))
     neighbourhood = Neighbourhood(known, Shield(floor=0.5, ceiling=50.0, fence=100.0))
     _, near = neighbourhood.look(Candidates(), (3.0, 0.0, 2.0), (), 1.5)
-    assert {thing.name: thing.gap for thing in near} == pytest.approx({"fence": 0.5, "floor": 1.0, "ceiling": 1.0})
+    assert {thing.name: thing.gap for thing in near} == pytest.approx(
+        {"fence": 0.5, "floor": 1.0, "ceiling": 1.0}
+    )
 
 
 def wall(gap: float, normal=(-1.0, 0.0, 0.0), name: str = "wall") -> Near:

@@ -136,7 +136,7 @@ def test_a_poor_link_takes_gain_and_speed_and_a_good_one_gives_them_back() -> No
     assert hypot(*full.commanded.meant[:3]) > 1.9
     assert hypot(*poor.commanded.meant[:3]) < 0.35 * SETTINGS.limits.horizontal_speed
     assert poor.p_h_rate[0] == pytest.approx(SETTINGS.link.least_speed * 2.0)
-    assert poor.terms.gain == pytest.approx(SETTINGS.link.least_gain)
+    assert poor.terms.link.gain == pytest.approx(SETTINGS.link.least_gain)
     flight.loss = 0.0
     assert flight.run(3.0, (0.1, 0.0, 0.0))[-1].commanded.meant[0] > 1.9
 

@@ -26,7 +26,7 @@ def after(name: str, value: int) -> int:
         ("mapping", [MappingMode.RATE, MappingMode.POSITION, MappingMode.RATE]),
         ("fine", [0, 1, 0]),
         ("clutch", [0, 1, 0]),
-        ("preset", [Preset.PAPER, Preset.ASSISTED, Preset.TRANSPARENT, Preset.TRAINING, Preset.PAPER]),
+        ("preset", [Preset.PAPER, Preset.ASSISTED, Preset.TRANSPARENT, Preset.TRAINING, Preset.ASSISTED]),
         ("position", [ALL_CUES, ALL_CUES - Cue.POSITION, ALL_CUES]),
         ("guard", [Cue.DAMPING, Cue.DAMPING + Cue.GUARD]),
     ],

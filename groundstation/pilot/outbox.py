@@ -176,7 +176,7 @@ def _fill_forecast(record: PilotState, outputs: Outputs) -> None:
     record.k1[:] = terms.loop.k1 if terms else _UNKNOWN4
     record.phase_margin = terms.loop.margin if terms else nan
     record.delay = terms.delay if terms else nan
-    record.gain_share, record.speed_share = (terms.gain, terms.speed) if terms else (1.0, 1.0)
+    record.gain_share, record.speed_share = terms.link if terms else (1.0, 1.0)
 
 
 def _fill_cues(record: PilotState, outputs: Outputs) -> None:

@@ -257,7 +257,7 @@ class Pilot:
         left = shares(inputs.delay, inputs.loss, link)
         loop = self._setpoints.loop(known, delay, assistance)
         told = (inputs.delay, inputs.loss, preset)
-        return Terms(told, delay, assistance, loop, left.gain, left.speed * assistance.speed)
+        return Terms(told, delay, assistance, loop, left, left.speed * assistance.speed)
 
     def _view(
         self, inputs: Inputs, reference: Reference, p: Vector4, forecast: Forecast, terms: Terms
@@ -271,7 +271,7 @@ class Pilot:
             position_error(reference.p_h, p),
             terms.delay,
             terms.loop.k1,
-            scaled(self.gains[inputs.choices.mapping].stiffness, terms.gain),
+            scaled(self.gains[inputs.choices.mapping].stiffness, terms.link.gain),
             forecast.p,
             forecast.velocity,
         )
@@ -289,7 +289,7 @@ class Pilot:
             u, v, w, _ = vehicle.velocity
             mismatch = (u - x, v - y, w - z)
         felt = Felt(law.force, nearest(commanded.near), mismatch, guarded, inputs.hand.velocity)
-        share = terms.gain * self.gains[choices.mapping].share
+        share = terms.link.gain * self.gains[choices.mapping].share
         return self._feedback[choices.mapping].cues(felt, weights, choices.cues, share)
 
     def _rendered(

@@ -13,6 +13,7 @@ from groundstation.pilot.compensation import Compensation, lagged
 from groundstation.pilot.forecast import Forecast
 from groundstation.pilot.inputs import Inputs
 from groundstation.pilot.limits import SetpointLimiter, SetpointMotion
+from groundstation.pilot.link_state import Shares
 from groundstation.pilot.margin import COMPENSATED, USUAL_LAGS, Lags, Loop, lags_of, loop_for
 from groundstation.pilot.presets import Assistance
 from groundstation.pilot.shield.barrier import Barrier
@@ -36,7 +37,7 @@ class Terms(NamedTuple):
         delay: Round trip, s: measured, or what is assumed until then.
         assistance: The preset's.
         loop: Gains that the delay leaves.
-        gain: Share of stiffness and cues that the link leaves, 0 to 1.
+        link: What the link leaves of gains and speeds.
         speed: Share of the speeds that link and preset leave, 0 to 1.
     """
 
@@ -44,7 +45,7 @@ class Terms(NamedTuple):
     delay: float
     assistance: Assistance
     loop: Loop
-    gain: float
+    link: Shares
     speed: float
 
 

@@ -80,7 +80,8 @@ def _other(value: int) -> int:
 
 
 def _next_preset(value: int) -> int:
-    return (value + 1) % len(Preset)
+    """Go round the presets that have a guard: one that has none is asked for by name, never passed through."""
+    return (value + 1) % len(Preset) or Preset.ASSISTED
 
 
 def _cue(cue: Cue, key: str, explains: str) -> Choice:
@@ -102,7 +103,9 @@ CHOICES = (
     Choice("mapping", _K.MAPPING, "m", "Mapping", "Rate or position.", _other),
     Choice("fine", _K.FINE, "f", "Fine", "Finer moves, or coarse again.", _other),
     Choice("clutch", _K.CLUTCH, "c", "Clutch", "The handle moves nothing, or takes hold again.", _other),
-    Choice("preset", _K.PRESET, "p", "Next preset", "Which cues and helps there are.", _next_preset),
+    Choice(
+        "preset", _K.PRESET, "p", "Next preset", "Which cues and helps; paper by name only.", _next_preset
+    ),
     *CUES.values(),
 )
 CHOICES_BY_NAME = {choice.name: choice for choice in CHOICES}

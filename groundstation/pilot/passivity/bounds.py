@@ -8,8 +8,8 @@ from drivers.device import Vector3
 
 # By no more than this hand or handle accelerate within a tick, m/s² (a force of 10 N on 0.1 kg).
 ACCELERATION = 100.0
-# A budget is not spent in one tick but over so long, s: else a force would come and go with every bit of energy that a
-# hand gives, and buzz.
+# A budget is not spent in one tick but over so long, s: else a force would come and go with every bit of energy
+# that a hand gives, and buzz.
 SPENT_S = 0.1
 # Slower than this, m/s, the handle has no direction.
 STILL = 1e-9

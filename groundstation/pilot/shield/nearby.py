@@ -20,6 +20,8 @@ _MOVED_M = 1.0
 # Within this way, m, everything is as near as it was: a fiftieth of the margin.
 _SAME_M = 0.005
 _FURTHER = 1.1
+# What is seen so near to a known obstacle is that obstacle, m: less than the margin, for something may lean on it.
+_SAME_THING_M = 0.15
 _SEEN = "sensor"
 _FAR = (inf, inf, inf)
 
@@ -48,6 +50,7 @@ class Candidates(NamedTuple):
         solids: All of them with their distance there, nearest first.
         looked: Where one last looked, m; with what was seen, and how far.
         seen: See `looked`.
+        unknown: Of what was seen, that which no known obstacle explains.
         reach: See `looked`.
         near: What was found there.
     """
@@ -56,6 +59,7 @@ class Candidates(NamedTuple):
     solids: tuple[tuple[float, Solid], ...] = ()
     looked: Vector3 = _FAR
     seen: tuple[Vector3, ...] = ()
+    unknown: tuple[Vector3, ...] = ()
     reach: float = 0.0
     near: tuple[Near, ...] = ()
 
@@ -104,14 +108,21 @@ class Neighbourhood:
             distance = solid.distance(x, y, z)
             if distance < within:
                 found.append(Near(distance - self._radius, solid.normal(x, y, z), solid.name, solid=True))
-        for at in seen:
+        unknown = known.unknown if seen == known.seen else self._unknown(seen)
+        for at in unknown:
             distance = dist(point, at)
             if 0.0 < distance < within:
                 away = ((x - at[0]) / distance, (y - at[1]) / distance, (z - at[2]) / distance)
                 found.append(Near(distance - self._radius, away, _SEEN, solid=True))
         self._bounds(found, point, reach)
         near = tuple(found)
-        return Candidates(at, solids, point, seen, reach, near), near
+        return Candidates(at, solids, point, seen, unknown, reach, near), near
+
+    def _unknown(self, seen: tuple[Vector3, ...]) -> tuple[Vector3, ...]:
+        """Return the points that lie on no known obstacle: what is known is kept away from by its exact distance."""
+        return tuple(
+            at for at in seen if not any(solid.distance(*at) < _SAME_THING_M for solid in self._solids)
+        )
 
     def _measured(self, point: Vector3) -> tuple[tuple[float, Solid], ...]:
         measured = ((solid.distance(*point), solid) for solid in self._solids)

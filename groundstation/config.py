@@ -264,6 +264,16 @@ def load_settings(path: Path | None) -> Settings:
         raise ConfigError(f"{file}: {error_sentence(error)}") from error
 
 
+def check_flown_by_rate(settings: Settings) -> None:
+    """Refuse settings that no simulated hand flies by: it holds the handle where a speed is, not where a place is.
+
+    Raises:
+        ConfigError: The mapping begins in position mode.
+    """
+    if settings.mapping.mode != "rate":
+        raise ConfigError('mapping.mode: a simulated hand flies by rate; set "rate" to let one fly.')
+
+
 def _usual_file() -> Path | None:
     import platformdirs
 

@@ -12,7 +12,7 @@ from typing import NoReturn
 
 import msgspec
 
-from groundstation.config import Settings, load_settings
+from groundstation.config import Settings, check_flown_by_rate, load_settings
 from groundstation.errors import InputError
 from groundstation.processes import free_port, running
 from groundstation.run import Run
@@ -60,6 +60,8 @@ def plan(asked: argparse.Namespace) -> Run:
         InputError: A file, a URL or a value is wrong.
     """
     settings = load_settings(asked.config)
+    if asked.headless:
+        check_flown_by_rate(settings)
     path = _mission_path(asked)
     mission = _with_vehicle(load_mission(path), asked) if path else None
     if mission:

@@ -86,6 +86,11 @@ def test_nothing_asked_prints_help_and_is_bad_input():
             "--channel: loss=2: '2' is not",
         ),
         (["--connect", "udpin://0.0.0.0:1", "--channel", "delay=1"], "the simulator's"),
+        (["--sim", "--headless", "--mission", "hover", "--config", "PLACE"], "flies by rate"),
+        (["evaluate", "--config", "PLACE"], "flies by rate"),
+        (["--sim", "--headless", "--mission", "hover", "--controller", "odd"], "nor MODULE:CLASS"),
+        (["--sim", "--headless", "--mission", "hover", "--controller", "odd:It"], "no module 'odd'"),
+        (["report"], "--paper"),
         (["--sim", "--headless", "--mission", "hover", "--logs", "/proc/nowhere"], "logs"),
         (["--sim", "--bogus"], "unrecognized"),
         (["--connect", CONNECT, "--headless", "--mission", "ODD", "--confirm-real"], "no such airframe"),
@@ -96,7 +101,10 @@ def test_nothing_asked_prints_help_and_is_bad_input():
 def test_what_is_wrong_gets_one_sentence_and_exit_2(tmp_path, arguments, words):
     odd = tmp_path / "odd.toml"
     odd.write_text('schema = 1\nname = "odd"\ntitle = "t"\n[vehicle]\nairframe = "zeppelin"\n')
-    done = run(*(str(odd) if word == "ODD" else word for word in arguments), cwd=tmp_path)
+    place = tmp_path / "place.toml"
+    place.write_text('[mapping]\nmode = "position"\n')
+    named = {"ODD": str(odd), "PLACE": str(place)}
+    done = run(*(named.get(word, word) for word in arguments), cwd=tmp_path)
     assert done.returncode == 2, done
     assert words in done.stderr
     assert "Traceback" not in done.stderr

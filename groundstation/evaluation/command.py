@@ -31,6 +31,7 @@ def evaluate(asked: argparse.Namespace) -> int:
     """
     out = _output(asked.out)
     settings = config.load_settings(asked.config)
+    config.check_flown_by_rate(settings)
     tasks = grid.tasks(read_axes(asked), settings)
     log = Log(out.with_suffix(LOG))
     try:

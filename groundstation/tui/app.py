@@ -37,6 +37,7 @@ from groundstation.tui.theme import THEME
 from groundstation.tui.track import History, Track
 
 _POLL_S = 0.1
+_SWITCH_S = 0.001
 
 
 class FlightApp(App[int]):
@@ -257,6 +258,10 @@ def run_screen(
     # A collection that looks through all the modules again takes 0.2 s, and a stick is stale after 0.1 s.
     gc.collect()
     gc.freeze()
+    # Nor may painting keep the stick's thread waiting: it asks for its turn and gets it within a millisecond, and the
+    # young objects of some thousand frames are looked through before all are.
+    sys.setswitchinterval(_SWITCH_S)
+    gc.set_threshold(2_000, 20, 1_000)
     watch = HangupWatch(sys.stdin.fileno())
     try:
         code = app.run()

@@ -80,19 +80,19 @@ class Feedback:
             share: Of the gains that link and device leave, 0 to 1; in equation (5) and in damping it is already.
         """
         settings, most = self._settings, self._settings.part_limit
+        force, thing, mismatched, guarded, velocity = felt
         position = environment = mismatch = guard = damping = ZERO3
         if on & _POSITION:
-            position = scaled(felt.force, weights.position)
-        thing = felt.nearest
+            position = force if weights.position == 1.0 else scaled(force, weights.position)
         if on & _ENVIRONMENT and thing is not None and thing.gap < settings.reach:
             push = settings.environment * (settings.reach - thing.gap) * weights.environment * share
             environment = scaled(thing.normal, min(push, most))
         if on & _MISMATCH and weights.mismatch:
-            mismatch = within(scaled(felt.mismatch, settings.mismatch * weights.mismatch * share), most)
-        if on & _GUARD and weights.guard and felt.guarded != ZERO3:
-            guard = within(scaled(felt.guarded, settings.guard * weights.guard * share), most)
+            mismatch = within(scaled(mismatched, settings.mismatch * weights.mismatch * share), most)
+        if on & _GUARD and weights.guard and guarded is not ZERO3:
+            guard = within(scaled(guarded, settings.guard * weights.guard * share), most)
         if on & _DAMPING and weights.damping:
-            damping = scaled(felt.velocity, -weights.damping * self._damping)
+            damping = scaled(velocity, -weights.damping * self._damping)
         return CueForces(position, environment, mismatch, guard, damping)
 
 

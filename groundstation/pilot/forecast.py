@@ -12,7 +12,7 @@ from math import cos, sin
 from typing import NamedTuple
 
 from drivers.device import ZERO3, Vector3
-from groundstation.frames import Vector4
+from groundstation.frames import Vector4, body_from_world
 from groundstation.pilot.margin import USUAL_LAGS
 from groundstation.pilot.sight import ZERO4, VehicleSample
 from sim.models.dynamic import Chi, ChiTuple, along, carried, rate
@@ -88,7 +88,8 @@ class Forecaster:
         """
         t = before.t + dt
         if sample is before.sample:
-            p, v = self._flown(before.p, before.v, _newest(before.marks), before.push, dt)
+            # Over a tick, and anew from every sample, the slope at its beginning will do.
+            p, v = self._onward(before.p, before.v, _newest(before.marks), before.push, dt)
             world = _in_world(v, p[3])
             return Forecast(
                 t, before.marks, sample, before.sample_t, p, v, world, before.push, before.believed
@@ -124,11 +125,15 @@ class Forecaster:
     def _step(
         self, p: Vector4, v: Vector4, setpoint: Vector4, push: Vector3, dt: float
     ) -> tuple[Vector4, Vector4]:
-        c, s = cos(p[3]), sin(p[3])
-        onto = (c * push[0] + s * push[1], c * push[1] - s * push[0], push[2])
-        chi = self._chi
+        chi, onto = self._chi, body_from_world(push, p[3])
         middle = along(v, rate(v, setpoint, onto, chi), 0.5 * dt)
         after = along(v, rate(middle, setpoint, onto, chi), dt)
+        return carried(p, v, after, dt), after
+
+    def _onward(
+        self, p: Vector4, v: Vector4, setpoint: Vector4, push: Vector3, dt: float
+    ) -> tuple[Vector4, Vector4]:
+        after = along(v, rate(v, setpoint, body_from_world(push, p[3]), self._chi), dt)
         return carried(p, v, after, dt), after
 
     def _observed(self, before: Forecast, sample: VehicleSample, sample_t: float) -> tuple[Vector3, Vector3]:

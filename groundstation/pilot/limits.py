@@ -121,7 +121,7 @@ def approach(motion: Motion, target: complex, bounds: Bounds, dt: float, share: 
     gap = target - v - a * (abs(a) * brake)
     distance = abs(gap)
     if distance < _THERE:
-        return _braked(motion, jerk, dt)
+        return Motion(*_braked(v, a, jerk, dt))
     faster = a + gap * (jerk * dt / distance)
     size = abs(faster)
     if size > most:
@@ -132,28 +132,22 @@ def approach(motion: Motion, target: complex, bounds: Bounds, dt: float, share: 
     beyond = (over.real * gap.real + over.imag * gap.imag) / distance
     if beyond > 0.0:
         # `reach` grows faster than in proportion to the push, so this share of it never passes.
-        rest, rest_a = _braked(motion, jerk, dt)
+        rest, rest_a = _braked(v, a, jerk, dt)
         part = distance / (distance + beyond)
         after = rest + part * (after - rest)
         faster = rest_a + part * (faster - rest_a)
         reach = after + faster * (abs(faster) * brake)
     safe = abs(after) <= top and abs(reach) <= top and abs(target - reach) <= distance
-    return Motion(after, faster) if safe else _braked(motion, jerk, dt)
+    return Motion(after, faster) if safe else Motion(*_braked(v, a, jerk, dt))
 
 
-def _reach(motion: Motion, jerk: float) -> complex:
-    """Return the velocity that braking at full jerk ends at."""
-    return motion.velocity + motion.acceleration * (abs(motion.acceleration) / (2.0 * jerk))
-
-
-def _braked(motion: Motion, jerk: float, dt: float) -> Motion:
+def _braked(v: complex, a: complex, jerk: float, dt: float) -> tuple[complex, complex]:
     """Take the acceleration towards zero at full jerk; where it gets there within the tick, it stays."""
-    v, a = motion
     size = abs(a)
     if size <= jerk * dt:
-        return Motion(_reach(motion, jerk), 0.0)
+        return v + a * (size / (2.0 * jerk)), 0.0
     slower = a * (1.0 - jerk * dt / size)
-    return Motion(v + (a + slower) * (0.5 * dt), slower)
+    return v + (a + slower) * (0.5 * dt), slower
 
 
 def _shortened(value: complex, length: float) -> complex:

@@ -148,7 +148,7 @@ class SetpointMaker:
         # Limits are on the motion in space, which stays as it is while the vehicle turns.
         motion = self._limiter.turned(before.motion, forecast.v[3] * inputs.dt)
         motion, meant = self._limiter.step(motion, safe, inputs.dt, speed)
-        then = lagged(before.then, meant, loop.delay, inputs.dt)
+        then = lagged(before.then, meant, loop.delay, inputs.dt) if assistance.weights.mismatch else meant
         setpoint = self._compensated(motion, meant, forecast, loop) if compensates else meant
         after = Commanding(motion, then, candidates)
         return after, Commanded(safe, meant, setpoint, then, by, near, loop, compensates)

@@ -1,4 +1,4 @@
-"""A controller of one's own: the hand's velocity, and a spring that grows softer, in twenty lines.
+"""A controller of one's own: the hand's velocity, and a spring that grows softer, on a page.
 
     groundstation --sim --controller docs.examples.soft_spring:SoftSpring
 

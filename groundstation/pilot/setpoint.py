@@ -141,7 +141,8 @@ class SetpointMaker:
         compensates = self._compensates(assistance)
         guard = self._guards[compensates] if assistance.guard else self._off
         velocity = forecast.velocity
-        speed_now = max(hypot(*velocity), hypot(v_ref[0], v_ref[1], v_ref[2]))
+        # What pushes the vehicle makes it no faster than by that much a second, within a lag.
+        speed_now = max(hypot(*velocity), hypot(v_ref[0], v_ref[1], v_ref[2])) + hypot(*forecast.push)
         reach = max(guard.reach(speed_now), self._felt * (assistance.weights.environment > 0.0))
         candidates, near = self._neighbourhood.look(before.candidates, forecast.p[:3], inputs.seen, reach)
         safe, by = guard.guard(v_ref, Situation(near, velocity, forecast.p[3], forecast.push))

@@ -27,7 +27,7 @@ from groundstation.pilot.shield.nearby import Near
 _RETREAT, _RETREAT_SPEED = 1.0, 0.4
 # How hard a speed that is too high already is held against: m/s a m/s.
 _AGAINST = 1.0
-# The setpoint is sent at 50 Hz: on average it waits half of that.
+# The setpoint is sent at 50 Hz: it waits a period at most.
 _SENDING_S = 0.02
 _FELT = 1e-3
 
@@ -45,13 +45,12 @@ class Barrier:
         self._margin = settings.margin
         self._braking = settings.braking * limits.acceleration
         # From full acceleration towards a thing to full braking takes 2 a / j; half of that is lost.
-        self._jerk_s = limits.acceleration / limits.jerk
+        self._delay_s = _SENDING_S + limits.acceleration / limits.jerk
         forward, left, up = lags[:3]
         self._gains = (forward.gain, left.gain, up.gain)
         self._times = (forward.time, left.time, up.time)
-        self._delay_s = _SENDING_S + self._jerk_s
-        self._gain = max(1.0, *(lag.gain for lag in lags[:3]))
-        self._slowest_s = _SENDING_S + self._jerk_s + max(lag.time for lag in lags[:3])
+        self._gain = max(1.0, *self._gains)
+        self._slowest_s = self._delay_s + max(self._times)
 
     def reach(self, speed: float) -> float:
         """Return the gap in which a vehicle told this speed, or at it, m/s, stops whatever way it flies; m."""

@@ -11,10 +11,10 @@ from pathlib import Path
 
 from matplotlib.figure import Figure
 
-from groundstation.review.figures import style
-from groundstation.review.paper_flights import fly_all, paper_mission
-from groundstation.review.paper_report import report_on
-from groundstation.review.report import WIDTH, Plate
+from groundstation.report.document import WIDTH, Plate
+from groundstation.report.figures import style
+from groundstation.report.paper_flights import fly_all, paper_mission
+from groundstation.report.paper_report import report_on
 
 ROOT = Path(__file__).resolve().parents[2]
 COLUMNS = (("Figure 10", "Beyond figure 11"), ("Figure 11", "Figure 12"))

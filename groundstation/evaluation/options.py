@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
+HELP = "compare controllers over many flights in virtual time"
 DESCRIPTION = """\
 Fly many flights in virtual time, on all cores or a cluster, and compare them. Every combination of the values given
 is flown with every seed. What is flown is kept at once: the same command goes on where it was stopped."""
@@ -19,6 +20,7 @@ examples:
 
 Columns and their formulas: docs/evaluate.md. Exit codes: 0 all flown, 1 the work broke off, 2 bad input, 130 stopped.
 """
+RUN = "groundstation.evaluation.command:evaluate"
 
 # Option, default, placeholder, what it is.
 _AXES = (

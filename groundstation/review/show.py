@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import argparse
 import os
 import subprocess
 import sys
@@ -17,6 +18,15 @@ from groundstation.review.listing import Entry, list_flights
 _MEMORY = ("--memory-limit", "75%", "--server-memory-limit", "2GB")
 
 Spawn = Callable[[Sequence[str]], int]
+
+
+def run(asked: argparse.Namespace) -> int:
+    """Do what was asked and return the exit code.
+
+    Raises:
+        InputError: There is no such recording, or no way to show it.
+    """
+    return list_all(asked.logs) if asked.list else show(asked.log, asked.logs, web=asked.web)
 
 
 def list_all(folder: Path) -> int:

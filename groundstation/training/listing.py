@@ -2,11 +2,17 @@
 
 from __future__ import annotations
 
+import argparse
 import sys
 from collections.abc import Sequence
 from pathlib import Path
 
 from groundstation.training.mission import MISSIONS_FOLDER, SUFFIX, MissionError, load_mission
+
+
+def run(asked: argparse.Namespace) -> int:
+    """Do what was asked and return the exit code."""
+    return show() if asked.act == "list" else check(asked.files)
 
 
 def show() -> int:

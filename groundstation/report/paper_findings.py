@@ -6,9 +6,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from groundstation.review.figures.force import NEAR_M
-from groundstation.review.paper_flights import PAPER, Flights, Flown
-from groundstation.review.report import Finding
+from groundstation.report.document import Finding
+from groundstation.report.figures.force import NEAR_M
+from groundstation.report.paper_flights import PAPER, Flights, Flown
 from groundstation.review.series import FlightSeries, Numbers, approaches, lengths
 
 FINAL_M = 0.05

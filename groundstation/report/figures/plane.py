@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from groundstation.review.figures import outlines, style
-from groundstation.review.figures.view import View, moments
+from groundstation.report.figures import outlines, style
+from groundstation.report.figures.view import View, moments
 from groundstation.review.series import Numbers, lengths
 from sim.environment.shapes import primitives
 from sim.scenario import Primitive

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from groundstation.review.figures import over_time, style
+from groundstation.report.figures import over_time, style
 from groundstation.review.series import FlightSeries, approaches
 
 if TYPE_CHECKING:

@@ -8,8 +8,9 @@ from math import hypot
 import numpy as np
 
 from groundstation import __version__
-from groundstation.review.figures import cues, errors, force, motion, plane, velocities
-from groundstation.review.paper_findings import (
+from groundstation.report.document import Plate, Report
+from groundstation.report.figures import cues, errors, force, motion, plane, velocities
+from groundstation.report.paper_findings import (
     FINAL_M,
     findings,
     following,
@@ -17,8 +18,7 @@ from groundstation.review.paper_findings import (
     strongest_near,
     to_target,
 )
-from groundstation.review.paper_flights import PAPER, Flights, Flown
-from groundstation.review.report import Plate, Report
+from groundstation.report.paper_flights import PAPER, Flights, Flown
 from groundstation.training.mission import Mission
 from sim.scenario import Wind
 

@@ -8,8 +8,8 @@ from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from groundstation.review.figures import style
-from groundstation.review.report import WIDTH, Plate, Report
+from groundstation.report.document import WIDTH, Plate, Report
+from groundstation.report.figures import style
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

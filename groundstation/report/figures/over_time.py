@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
-from groundstation.review.figures import style
+from groundstation.report.figures import style
 from groundstation.review.series import Approach, Numbers
 
 if TYPE_CHECKING:

@@ -10,11 +10,11 @@ from series_support import MISSION, RADIUS, TARGET, a_series
 
 from groundstation import cli
 from groundstation.errors import InputError
-from groundstation.review import paper, report_pdf
-from groundstation.review.paper_findings import deviation, following, settled_at, strongest_near
-from groundstation.review.paper_flights import Flights, Flown
-from groundstation.review.paper_report import report_on
-from groundstation.review.report import Finding, Plate, Report, page
+from groundstation.report import paper, pdf
+from groundstation.report.document import Finding, Plate, Report, page
+from groundstation.report.paper_findings import deviation, following, settled_at, strongest_near
+from groundstation.report.paper_flights import Flights, Flown
+from groundstation.report.paper_report import report_on
 from groundstation.training.mission import Mission, Target
 from sim.scenario import Box
 
@@ -91,7 +91,7 @@ def test_the_same_report_is_the_same_page():
 
 def test_a_pdf_has_a_page_of_words_and_the_figures(tmp_path):
     file = tmp_path / "report.pdf"
-    report_pdf.save(a_report(Finding("Fig. 1", "fall", "1 m")), file)
+    pdf.save(a_report(Finding("Fig. 1", "fall", "1 m")), file)
     written = file.read_bytes()
     assert written.startswith(b"%PDF")
     assert len(re.findall(rb"/Type /Page\b", written)) == 2

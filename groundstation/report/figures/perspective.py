@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from groundstation.review.figures import outlines, style
-from groundstation.review.figures.camera import Camera, looking_at
-from groundstation.review.figures.view import View
+from groundstation.report.figures import outlines, style
+from groundstation.report.figures.camera import Camera, looking_at
+from groundstation.report.figures.view import View
 from groundstation.review.series import Numbers
 from sim.environment.shapes import extent
 from sim.environment.world import World

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from groundstation.review.figures import perspective, plane, style
-from groundstation.review.figures.view import view_of
+from groundstation.report.figures import perspective, plane, style
+from groundstation.report.figures.view import view_of
 from groundstation.review.series import FlightSeries
 from groundstation.training.mission import Mission
 

@@ -9,14 +9,14 @@ from io import StringIO
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
-from groundstation.review.figures import style
+from groundstation.report.figures import style
 
 if TYPE_CHECKING:
     from matplotlib.figure import FigureBase
 
 # Of a figure, inches: a text column of A4.
 WIDTH = 7.1
-_STYLE_SHEET = Path(__file__).with_name("report.css")
+_STYLE_SHEET = Path(__file__).with_name("document.css")
 
 
 class Finding(NamedTuple):

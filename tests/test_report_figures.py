@@ -12,9 +12,9 @@ from matplotlib.figure import Figure
 from msgspec.structs import replace
 from series_support import MISSION, RADIUS, TARGET, a_series
 
-from groundstation.review.figures import cues, errors, force, motion, outlines, over_time, style, velocities
-from groundstation.review.figures.camera import looking_at
-from groundstation.review.figures.view import moments, view_of
+from groundstation.report.figures import cues, errors, force, motion, outlines, over_time, style, velocities
+from groundstation.report.figures.camera import looking_at
+from groundstation.report.figures.view import moments, view_of
 from groundstation.review.series import approaches, lengths
 from sim.environment.shapes import extent
 from sim.environment.world import World

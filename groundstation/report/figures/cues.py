@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from groundstation.review.figures import over_time, style
-from groundstation.review.figures.force import NEAR_M
+from groundstation.report.figures import over_time, style
+from groundstation.report.figures.force import NEAR_M
 from groundstation.review.series import FlightSeries, approaches, lengths
 
 if TYPE_CHECKING:

@@ -10,10 +10,10 @@ from pathlib import Path
 from typing import TextIO
 
 from groundstation.errors import InputError
-from groundstation.review import report_pdf
-from groundstation.review.paper_flights import Watcher, fly_all, paper_mission
-from groundstation.review.paper_report import report_on
-from groundstation.review.report import Finding, Report, page
+from groundstation.report import pdf
+from groundstation.report.document import Finding, Report, page
+from groundstation.report.paper_flights import Watcher, fly_all, paper_mission
+from groundstation.report.paper_report import report_on
 from groundstation.training.director import Director
 from groundstation.training.mission import Mission
 
@@ -75,7 +75,7 @@ def _write(found: Report, files: Sequence[Path]) -> None:
     html_file, *documents = files
     html_file.write_text(page(found), encoding="utf-8")
     for document in documents:
-        report_pdf.save(found, document)
+        pdf.save(found, document)
 
 
 def _print(findings: Sequence[Finding], files: Sequence[Path]) -> None:

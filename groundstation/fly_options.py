@@ -1,0 +1,60 @@
+"""The options of a flight. It imports nothing heavy: `--help` must answer at once."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+
+def fill(parser: argparse.ArgumentParser) -> None:
+    """Add the options to a parser."""
+    vehicle = parser.add_argument_group("vehicle (one of)").add_mutually_exclusive_group()
+    vehicle.add_argument("--sim", action="store_true", help="start and fly a simulated vehicle")
+    vehicle.add_argument(
+        "--connect",
+        metavar="URL",
+        help="fly the vehicle at udpin://HOST:PORT, udpout://HOST:PORT, tcpout://HOST:PORT or serial://PORT:BAUD",
+    )
+    flight = parser.add_argument_group("flight")
+    flight.add_argument(
+        "--mission", metavar="NAME", help="a mission by name or .toml file (default: free flight)"
+    )
+    flight.add_argument(
+        "--device", metavar="NAME[:ADDRESS]", help="haptic device (default: the on-screen stick)"
+    )
+    flight.add_argument(
+        "--controller",
+        default="paper",
+        metavar="MODULE:CLASS",
+        help="your own controller; see docs/control.md (default: the paper's)",
+    )
+    flight.add_argument(
+        "--headless", action="store_true", help="no screen: the scripted hand flies the mission"
+    )
+    flight.add_argument("--json", action="store_true", help="with --headless: the summary as one JSON object")
+    flight.add_argument(
+        "--confirm-real",
+        action="store_true",
+        help="with --headless --connect: yes, fly a real vehicle by itself",
+    )
+    sim = parser.add_argument_group("simulated vehicle (with --sim)")
+    sim.add_argument(
+        "--airframe", metavar="NAME", help="a preset's name or a .toml file (default: the mission's)"
+    )
+    sim.add_argument(
+        "--model",
+        choices=("kinematic", "dynamic", "rigid_body"),
+        help="motion model (default: the mission's)",
+    )
+    sim.add_argument(
+        "--channel",
+        metavar="KEY=VALUE,...",
+        help="what the way to the vehicle does, such as delay=0.15,loss=0.05; see 'python -m sim --help'",
+    )
+    sim.add_argument(
+        "--seed", type=int, metavar="N", help="seed of all that is random (default: 0)", default=0
+    )
+    general = parser.add_argument_group("settings and recording")
+    general.add_argument("--config", type=Path, metavar="FILE", help="settings (default: groundstation.toml)")
+    general.add_argument("--logs", type=Path, default=Path("logs"), metavar="DIR", help="recordings go here")
+    general.add_argument("--rerun", action="store_true", help="show the flight live in the Rerun viewer")

@@ -43,6 +43,9 @@ class Figures:
         final_error: Distance to the target at the end of the hold, m; NaN before.
         max_force: Largest force on the hand, N.
         duration: From take-off to landing, or to now, s.
+        collisions: Contacts with obstacles.
+        least_clearance: From the hull to the nearest obstacle, the least in the air so far, m; infinite without any.
+        gates, gates_missed: Those of the mission, and those of them not flown through yet.
     """
 
     path: float = 0.0
@@ -52,6 +55,9 @@ class Figures:
     max_force: float = 0.0
     duration: float = 0.0
     collisions: int = 0
+    least_clearance: float = math.inf
+    gates: int = 0
+    gates_missed: int = 0
 
     @property
     def rms_error(self) -> float:
@@ -84,6 +90,7 @@ class Director:
 
     def __post_init__(self) -> None:
         self._gates = [obstacle for obstacle in self.mission.obstacle if isinstance(obstacle, Gate)]
+        self.figures.gates = self.figures.gates_missed = len(self._gates)
 
     @property
     def legs(self) -> int:
@@ -102,6 +109,7 @@ class Director:
         if self._last is not None:
             self.figures.path += math.dist(self._last, position)
             self._gates = [gate for gate in self._gates if not flown_through(gate, self._last, position)]
+            self.figures.gates_missed = len(self._gates)
         self._last = position
         self._watch_obstacles(position)
         if not armed:
@@ -157,6 +165,7 @@ class Director:
     def _watch_obstacles(self, position: Vector3) -> None:
         distance, name = self.world.clearance(position)
         self.clearance = distance - self.radius
+        self.figures.least_clearance = min(self.figures.least_clearance, self.clearance)
         within = RELEASE if name == self._touching else _CONTACT_MARGIN_M
         touching = name if self.clearance < within else ""
         if touching and touching != self._touching:

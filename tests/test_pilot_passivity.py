@@ -5,7 +5,7 @@ from math import dist, hypot, inf, nan
 
 import pytest
 from haptic_loop import DEVICE, DT, LOOSE, Link, least_energy
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from drivers.arm import Arm
@@ -129,6 +129,7 @@ def test_what_is_not_finite_is_not_booked_and_not_rendered(mode, broken: float) 
 
 
 @every_mode
+@example(-2e-3, (0.0, 0.0, 1.0), (0.0, 1.0, 0.0), 0.0)
 @given(st.floats(-0.002, 0.3), FORCES, VELOCITIES, DELAYS)
 def test_what_is_rendered_never_gives_more_than_what_is_wanted(mode, energy, wanted, velocity, delay) -> None:
     force = passivity_named(mode, DEVICE).rendered(Port(energy=energy), wanted, velocity, DT, delay).force

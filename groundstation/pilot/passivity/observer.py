@@ -9,7 +9,7 @@ from __future__ import annotations
 from math import isfinite, sqrt
 
 from drivers.device import ZERO3, Vector3
-from groundstation.pilot.passivity.bounds import STILL, affordable, covered, lowered
+from groundstation.pilot.passivity.bounds import STILL, affordable, covered, lowered, no_longer
 from groundstation.pilot.passivity.port import CREDIT, RESERVE, Port, held
 from groundstation.pilot.passivity.scheme import Passivity
 
@@ -28,8 +28,8 @@ class Observer(Passivity):
         """Return the port with the force that its account covers; see `Passivity.rendered`.
 
         The part along the motion is brought down to what the next tick may give, and, where the account is
-        overdrawn, on to damping, as strong as the device renders it. As the credit runs out, so does the force
-        across the motion.
+        overdrawn, on to damping, as strong as the device renders it; the whole is then no longer than the force wanted
+        or the damping. As the credit runs out, so does the force across the motion.
         """
         u, v, w = velocity
         speed = sqrt(u * u + v * v + w * w)
@@ -38,6 +38,7 @@ class Observer(Passivity):
         budget = port.energy + CREDIT
         force = wanted
         if speed > STILL:
-            allowed = max(affordable(budget - RESERVE, speed, dt), -self._damping_limit * speed)
-            force = lowered(wanted, velocity, speed, allowed)
+            most = self._damping_limit * speed
+            allowed = max(affordable(budget - RESERVE, speed, dt), -most)
+            force = no_longer(lowered(wanted, velocity, speed, allowed), wanted, most)
         return held(port, covered(force, velocity, dt, budget), wanted, velocity, dt)

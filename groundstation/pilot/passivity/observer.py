@@ -28,8 +28,8 @@ class Observer(Passivity):
         """Return the port with the force that its account covers; see `Passivity.rendered`.
 
         The part along the motion is brought down to what the next tick may give, and, where the account is
-        overdrawn, on to damping, as strong as the device renders it; the whole is then no longer than the force wanted
-        or the damping. As the credit runs out, so does the force across the motion.
+        overdrawn, on to damping, as strong as the device renders it; the whole is then no longer than the one
+        wanted or the damping. As the credit runs out, so does the force across the motion.
         """
         u, v, w = velocity
         speed = sqrt(u * u + v * v + w * w)

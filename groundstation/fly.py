@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import datetime
+import getpass
 import os
 import signal
 import sys
@@ -85,6 +86,8 @@ def plan(asked: argparse.Namespace) -> Run:
         log=str(_log_stem(asked.logs, now, mission)),
         viewer_url=_viewer(asked),
         controller=asked.controller,
+        pilot=_pilot(asked.pilot),
+        seed=asked.seed,
         terminal="" if asked.headless else terminal_path(),
         started=now.isoformat(timespec="milliseconds"),
     )
@@ -196,6 +199,16 @@ def _device(asked: argparse.Namespace, run_id: str) -> str:
     if asked.device.startswith(_EMULATED) and "@" not in asked.device:
         return f"{asked.device}@{ours}"
     return asked.device
+
+
+def _pilot(named: str | None) -> str:
+    """Return who flies: as named, else who is logged in, where the system knows."""
+    if named is not None:
+        return named.strip()
+    try:
+        return getpass.getuser()
+    except (KeyError, OSError):
+        return ""
 
 
 def _log_stem(folder: Path, now: datetime.datetime, mission: Mission | None) -> Path:

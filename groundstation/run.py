@@ -30,6 +30,8 @@ class Run(Struct, frozen=True):
         terminal: The terminal the screen is on, or "": who is left gives it back when the screen is killed.
         controller: What flies, as `module:Class`, or "paper".
         started: Wall-clock time of the start, ISO 8601.
+        pilot: Who flies, as people know them.
+        seed: Of all that is random in the simulation.
     """
 
     run_id: str
@@ -44,6 +46,8 @@ class Run(Struct, frozen=True):
     started: str
     terminal: str = ""
     controller: str = "paper"
+    pilot: str = ""
+    seed: int = 0
 
     @property
     def hand(self) -> Path | None:

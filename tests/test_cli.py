@@ -90,7 +90,7 @@ def test_nothing_asked_prints_help_and_is_bad_input():
         (["evaluate", "--config", "PLACE"], "flies by rate"),
         (["--sim", "--headless", "--mission", "hover", "--controller", "odd"], "nor MODULE:CLASS"),
         (["--sim", "--headless", "--mission", "hover", "--controller", "odd:It"], "no module 'odd'"),
-        (["report"], "--paper"),
+        (["report"], "no recorded flights"),
         (["--sim", "--headless", "--mission", "hover", "--logs", "/proc/nowhere"], "logs"),
         (["--sim", "--bogus"], "unrecognized"),
         (["--connect", CONNECT, "--headless", "--mission", "ODD", "--confirm-real"], "no such airframe"),

@@ -207,13 +207,6 @@ def test_a_pdf_that_cannot_be_written_is_told_too(tmp_path):
         paper.report(tmp_path / "paper.html", 0, pdf=True)
 
 
-def test_the_command_wants_to_be_told_which_report(capsys):
-    with pytest.raises(SystemExit) as ended:
-        cli.main(["report"])
-    assert ended.value.code == 2
-    assert "--paper" in capsys.readouterr().err
-
-
 def test_the_command_tells_an_unwritable_path_and_ends_with_2(tmp_path, capsys):
     with pytest.raises(SystemExit) as ended:
         cli.main(["report", "--paper", "--out", str(tmp_path / "nowhere" / "paper.html")])

@@ -33,6 +33,9 @@ def about_flight(run: Run) -> Iterator[Still]:
         "vehicle": run.url,
         "simulated": run.simulated,
         "device": run.device,
+        "controller": run.controller,
+        "pilot": run.pilot,
+        "seed": run.seed,
         "groundstation": groundstation.__version__,
         "revision": revision(),
         "rerun": rr.__version__,
@@ -75,6 +78,7 @@ def _page(run: Run, device: DeviceReport | None) -> Still:
     facts = {
         "Started": run.started,
         "Vehicle": f"simulated, {run.url}" if run.simulated else run.url,
+        "Pilot": run.pilot or "not named",
         "Device": _device_words(run, device),
         "Program": f"groundstation {groundstation.__version__} {revision()}".strip(),
     }

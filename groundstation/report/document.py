@@ -60,6 +60,24 @@ class Plate(NamedTuple):
     draw: Callable[[FigureBase], None]
 
 
+class Table(NamedTuple):
+    """A table with its words.
+
+    Attributes:
+        title: What it tells.
+        words: How to read it; "" for nothing.
+        heads: Of the columns.
+        rows: A cell a column.
+        folded: Shown only when asked for, where that is possible.
+    """
+
+    title: str
+    words: str
+    heads: Sequence[str]
+    rows: Sequence[Sequence[str]]
+    folded: bool = False
+
+
 class Report(NamedTuple):
     """What a report says, in its order.
 
@@ -69,6 +87,7 @@ class Report(NamedTuple):
         findings: The table.
         plates: The figures.
         facts: How it came about: pairs of name and value.
+        tables: After the figures.
     """
 
     title: str
@@ -76,6 +95,7 @@ class Report(NamedTuple):
     findings: Sequence[Finding]
     plates: Sequence[Plate]
     facts: Sequence[tuple[str, str]]
+    tables: Sequence[Table] = ()
 
     @property
     def holds(self) -> bool:
@@ -89,6 +109,7 @@ def page(report: Report) -> str:
     parts += [f"<p>{_text(paragraph)}</p>" for paragraph in report.lead]
     parts.append(_table(report.findings))
     parts += [_figure(plate) for plate in report.plates]
+    parts += [_other_table(table) for table in report.tables]
     facts = "".join(f"<dt>{_text(name)}</dt><dd>{_text(value)}</dd>" for name, value in report.facts)
     parts.append(f"<h2>How it was made</h2><dl>{facts}</dl>")
     return (
@@ -108,6 +129,17 @@ def _table(findings: Sequence[Finding]) -> str:
     )
     heads = "".join(f"<th>{head}</th>" for head in ("", "quantity", "found", "bar", ""))
     return f"<table><thead><tr>{heads}</tr></thead><tbody>{rows}</tbody></table>"
+
+
+def _other_table(table: Table) -> str:
+    heads = "".join(f"<th>{_text(head)}</th>" for head in table.heads)
+    rows = "".join(f"<tr>{''.join(f'<td>{_text(cell)}</td>' for cell in row)}</tr>" for row in table.rows)
+    words = f"<p>{_text(table.words)}</p>" if table.words else ""
+    cells = f"<table><thead><tr>{heads}</tr></thead><tbody>{rows}</tbody></table>" if table.rows else ""
+    inside = f"{words}{cells}"
+    if table.folded:
+        return f"<details><summary><h2>{_text(table.title)}</h2></summary>{inside}</details>"
+    return f"<h2>{_text(table.title)}</h2>{inside}"
 
 
 def _figure(plate: Plate) -> str:

@@ -3,15 +3,11 @@
 from __future__ import annotations
 
 import sys
-import tempfile
 import time
-from collections.abc import Sequence
 from pathlib import Path
 from typing import TextIO
 
-from groundstation.errors import InputError
-from groundstation.report import pdf
-from groundstation.report.document import Finding, Report, page
+from groundstation.report.files import files_of, tell, write
 from groundstation.report.paper_flights import Watcher, fly_all, paper_mission
 from groundstation.report.paper_report import report_on
 from groundstation.training.director import Director
@@ -35,8 +31,7 @@ def report(out: Path, seed: int, *, pdf: bool, mission: Mission | None = None) -
     Raises:
         InputError: A file cannot be written there.
     """
-    files = [out, out.with_suffix(".pdf")] if pdf else [out]
-    _check(files)
+    files = files_of(out, with_pdf=pdf)
     progress = _Progress(sys.stderr)
     flights = fly_all(
         mission or paper_mission(), seed, lambda conditions: progress.of(f"flying {conditions}")
@@ -44,48 +39,11 @@ def report(out: Path, seed: int, *, pdf: bool, mission: Mission | None = None) -
     progress.tell("drawing")
     found = report_on(flights, seed)
     try:
-        _write(found, files)
-    except OSError as error:
-        raise _unwritable(out, error) from error
+        write(found, files)
     finally:
         progress.close()
-    _print(found.findings, files)
+    tell(found.findings, files)
     return 0 if found.holds else 1
-
-
-def _check(files: Sequence[Path]) -> None:
-    """Say what is wrong with a path before anything is flown for it."""
-    if files[0].suffix.lower() == ".pdf":
-        raise InputError(f"{files[0]}: the page is HTML; name an .html file, --pdf writes the PDF beside it.")
-    for file in files:
-        try:
-            if file.exists():
-                file.open("ab").close()
-            else:
-                tempfile.TemporaryFile(dir=file.parent).close()
-        except OSError as error:
-            raise _unwritable(file, error) from error
-
-
-def _unwritable(file: Path, error: OSError) -> InputError:
-    return InputError(f"{file}: cannot be written ({error.strerror}); choose another --out.")
-
-
-def _write(found: Report, files: Sequence[Path]) -> None:
-    html_file, *documents = files
-    html_file.write_text(page(found), encoding="utf-8")
-    for document in documents:
-        pdf.save(found, document)
-
-
-def _print(findings: Sequence[Finding], files: Sequence[Path]) -> None:
-    """Print the table, and where the report is."""
-    cells = [(*finding[:4], finding.verdict) for finding in findings]
-    widths = [max(len(row[column]) for row in cells) for column in range(4)]
-    for row in cells:
-        line = "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=False))
-        sys.stdout.write(f"{line}  {row[4]}".rstrip() + "\n")
-    sys.stdout.write("".join(f"{file}\n" for file in files))
 
 
 class _Progress:

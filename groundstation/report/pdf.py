@@ -8,7 +8,7 @@ from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from groundstation.report.document import WIDTH, Plate, Report
+from groundstation.report.document import WIDTH, Plate, Report, Table
 from groundstation.report.figures import style
 
 if TYPE_CHECKING:
@@ -55,6 +55,15 @@ class _Sheet:
             self._put(x, self.y, cell, _SMALL, colour, bold=bold)
         self.y += _ROW
 
+    def cells(self, cells: Sequence[Sequence[str]], widths: Sequence[float], *, bold: bool) -> None:
+        """Write a row of cells that are wrapped already."""
+        x = 0.0
+        for lines, width in zip(cells, widths, strict=True):
+            for place, line in enumerate(lines):
+                self._put(x, self.y + place * _line_height(_SMALL), line, _SMALL, style.TEXT, bold=bold)
+            x += width
+        self.y += len(max(cells, key=len)) * _line_height(_SMALL) + 0.3 * _SMALL / 72.0
+
     def _put(self, x: float, y: float, words: str, size: float, colour: style.Colour, *, bold: bool) -> None:
         self.figure.text(
             (_LEFT + x) / _PAGE[0], 1.0 - y / _PAGE[1], words, fontsize=size, color=colour, va="top",
@@ -74,6 +83,8 @@ def save(report: Report, path: Path) -> None:
         pages.savefig(_front(report))
         for plates in _paged(report.plates):
             pages.savefig(_figures(plates))
+        for sheet in _table_sheets(report.tables):
+            pages.savefig(sheet)
 
 
 def _front(report: Report) -> Figure:
@@ -89,6 +100,35 @@ def _front(report: Report) -> Figure:
     for name, value in report.facts:
         sheet.write(f"{name}: {value}", _SMALL, colour=style.FAINT)
     return sheet.figure
+
+
+def _table_sheets(tables: Sequence[Table]) -> Iterator[Figure]:
+    """Yield the pages of the tables, one below the other; a row's cells are wrapped to their columns."""
+    sheet: _Sheet | None = None
+    for table in tables:
+        widths = _widths(table)
+        sheet = sheet or _Sheet()
+        sheet.write(table.title, _HEAD, bold=True)
+        if table.words:
+            sheet.write(table.words, _SMALL, colour=style.FAINT)
+        for row in (table.heads, *table.rows) if table.rows else ():
+            cells = [_lines(cell, _SMALL, width) or [""] for cell, width in zip(row, widths, strict=True)]
+            if sheet.y + len(max(cells, key=len)) * _line_height(_SMALL) > _PAGE[1] - _TOP:
+                yield sheet.figure
+                sheet = _Sheet()
+            sheet.cells(cells, widths, bold=row is table.heads)
+        sheet.y += _BETWEEN
+    if sheet:
+        yield sheet.figure
+
+
+def _widths(table: Table) -> list[float]:
+    """Return the columns' widths, inches, after the longest words in each, none wider than half the page."""
+    longest = [
+        max(len(row[column]) for row in (table.heads, *table.rows)) + 2 for column in range(len(table.heads))
+    ]
+    room = [min(letters, 50) for letters in longest]
+    return [WIDTH * letters / max(sum(room), 60) for letters in room]
 
 
 def _paged(plates: Sequence[Plate]) -> Iterator[list[Plate]]:
@@ -130,8 +170,8 @@ def _head(plate: Plate) -> str:
     return f"{plate.name}. {plate.title}"
 
 
-def _lines(words: str, size: float) -> list[str]:
-    return textwrap.wrap(words, int(_LETTERS / size))
+def _lines(words: str, size: float, width: float = WIDTH) -> list[str]:
+    return textwrap.wrap(words, max(4, int(_LETTERS / size * width / WIDTH)))
 
 
 def _line_height(size: float) -> float:

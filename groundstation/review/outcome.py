@@ -16,7 +16,7 @@ from sim.airframe import load_airframe
 from sim.environment.world import World
 from sim.scenario import ScenarioError
 
-_COUPLED = frozenset({"engaged", "on leash"})
+COUPLED = frozenset({"engaged", "on leash"})
 
 
 class Outcome(NamedTuple):
@@ -55,10 +55,10 @@ def outcome_of(flight: Flight) -> Outcome:
 
 def directed(flight: Flight, mission: Mission) -> Director:
     """Return the director of a mission that has seen all of a flight."""
-    director = Director(mission, World(mission.obstacle), _radius(mission))
+    director = Director(mission, World(mission.obstacle), radius_of(mission))
     t, positions = flight.series(schema.POSITION)
-    words = _words_at(flight, lanes.VEHICLE, t)
-    known = np.isfinite(positions[:, :3]).all(axis=1)
+    words = words_at(flight, lanes.VEHICLE, t)
+    known = np.isfinite(positions[:, :3].sum(axis=1))
     for when, (x, y, z), word, good in zip(t.tolist(), positions[:, :3].tolist(), words, known, strict=True):
         if good:
             in_air = word == "in air"
@@ -74,14 +74,14 @@ def _controlled(flight: Flight, director: Director) -> None:
     if not len(force_t):
         return
     newest = np.maximum(np.searchsorted(force_t, t, side="right") - 1, 0)
-    phases = _words_at(flight, lanes.PHASE, t)
+    phases = words_at(flight, lanes.PHASE, t)
     rows = zip(errors[:, :3].tolist(), forces[newest].tolist(), phases, strict=True)
     for (ex, ey, ez), (fx, fy, fz), phase in rows:
-        if phase in _COUPLED:
+        if phase in COUPLED:
             director.controller((ex, ey, ez), (fx, fy, fz))
 
 
-def _words_at(flight: Flight, lane: lanes.Lane, t: Numbers) -> list[str]:
+def words_at(flight: Flight, lane: lanes.Lane, t: Numbers) -> list[str]:
     """Return a lane's word at each time, "" before its first."""
     changes = flight.states(lane)
     words = ["", *(word for _, word in changes)]
@@ -89,7 +89,7 @@ def _words_at(flight: Flight, lane: lanes.Lane, t: Numbers) -> list[str]:
     return [words[place] for place in places]
 
 
-def _radius(mission: Mission) -> float:
+def radius_of(mission: Mission) -> float:
     """Return the hull's radius, m; the usual one where the airframe's file has gone since."""
     try:
         return load_airframe(mission.vehicle.airframe).radius

@@ -23,15 +23,18 @@ _COLOURS = {
 }
 
 
+def felt(series: FlightSeries) -> list[str]:
+    """Return the cues that can be felt somewhere in a flight."""
+    return [name for name, force in series.cues.items() if lengths(force).max() > _FELT_N]
+
+
 def draw(on: FigureBase, series: FlightSeries) -> None:
     """Draw the norm of every cue that can be felt."""
     axes = on.subplots()
     over_time.prepare([axes], series.t)
     over_time.shade(axes, approaches(series, NEAR_M), named=True)
-    for name, force in series.cues.items():
-        strength = lengths(force)
-        if strength.max() > _FELT_N:
-            axes.plot(series.t, strength, color=_COLOURS[name], label=name)
+    for name in felt(series):
+        axes.plot(series.t, lengths(series.cues[name]), color=_COLOURS[name], label=name)
     axes.set_ylim(bottom=0.0)
     axes.set_ylabel("strength, N")
     axes.legend(frameon=False, loc="upper right")

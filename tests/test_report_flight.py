@@ -29,8 +29,8 @@ from groundstation.recording.batch import Batch
 from groundstation.recording.session import Session
 from groundstation.report import classroom, comparison, flight_report, pdf
 from groundstation.report.document import page
-from groundstation.report.recorded_series import recorded_series, thinned
 from groundstation.review.flight import Flight
+from groundstation.review.recorded_series import recorded_series, thinned
 
 RECORDINGS = Path(__file__).parent / "recordings"
 

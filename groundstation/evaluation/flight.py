@@ -14,7 +14,7 @@ from drivers.device import DeviceInfo
 from groundstation.config import Settings
 from groundstation.evaluation.channel_ends import Link
 from groundstation.evaluation.hands import Hand
-from groundstation.evaluation.local_site import LocalSite, handle_at
+from groundstation.evaluation.local_site import LocalSite, Mover, handle_at
 from groundstation.evaluation.remote_site import STEP_S, RemoteSite
 from groundstation.evaluation.sample import Observer, Sample
 from groundstation.pilot.chooser import beginning
@@ -66,6 +66,7 @@ class VirtualFlight:
         setup: What is flown.
         hand: Makes the one on the handle.
         observers: Are shown a sample with every setpoint.
+        arm: Moves the handle; a person's unless given.
 
     Attributes:
         vehicle: The simulated vehicle, for who wants the truth.
@@ -76,7 +77,9 @@ class VirtualFlight:
         TakeOffError: The vehicle does not come to hover.
     """
 
-    def __init__(self, setup: Setup, hand: HandMaker, observers: tuple[Observer, ...] = ()) -> None:
+    def __init__(
+        self, setup: Setup, hand: HandMaker, observers: tuple[Observer, ...] = (), arm: Mover | None = None
+    ) -> None:
         settings = setup.settings
         device = handle_at(setup.rate)
         self.vehicle = build(setup.scenario, seed=setup.seed)
@@ -92,6 +95,7 @@ class VirtualFlight:
             settings=settings,
             choices=beginning(settings).choices,
             start_t=self.vehicle.t,
+            arm=arm,
         )
         self._observers = observers
         self._ticks_between = round(setup.rate) // STEPS_HZ - 1

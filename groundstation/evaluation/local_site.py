@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from dataclasses import replace
 from math import inf, sqrt
+from typing import Protocol
 
 from drivers.arm import Arm, ArmState, stop
-from drivers.device import ZERO3, DeviceInfo, HandleState
+from drivers.device import ZERO3, DeviceInfo, HandleState, Vector3
 from drivers.scripted import INFO
 from groundstation.config import Settings
 from groundstation.evaluation.channel_ends import GroundEnd, Link
@@ -25,6 +26,16 @@ def handle_at(rate: float) -> DeviceInfo:
     return replace(INFO, rate=rate, stiffness_limit=INFO.stiffness_limit * rate / INFO.rate)
 
 
+class Mover(Protocol):
+    """Moves the handle, as `drivers.arm.Arm` does."""
+
+    def step(
+        self, state: ArmState, dt: float, intention: Vector3, intended_yaw: float, force: Vector3
+    ) -> ArmState:
+        """Return the handle `dt` seconds later."""
+        ...
+
+
 class LocalSite:
     """Everything on the operator's side but the screen.
 
@@ -36,8 +47,10 @@ class LocalSite:
         settings: Those of the pilot.
         choices: The operator's, all the flight long.
         start_t: When it begins, s.
+        arm: Moves the handle where the hand wants it; a person's unless given.
 
     Attributes:
+        pilot: As given.
         t: Of the tick that comes next, s.
         end: The ground's end of the link.
         coupling: Of hand and vehicle.
@@ -58,10 +71,11 @@ class LocalSite:
         settings: Settings,
         choices: Choices,
         start_t: float,
+        arm: Mover | None = None,
     ) -> None:
-        self._pilot, self._hand, self._choices = pilot, hand, choices
+        self.pilot, self._hand, self._choices = pilot, hand, choices
         self._workspace = device.workspace
-        self._arm, self._arm_state = Arm(), ArmState()
+        self._arm, self._arm_state = arm or Arm(), ArmState()
         self._wanted = CENTRE
         self._memory = Memory()
         self._dt = 1.0 / device.rate
@@ -93,7 +107,7 @@ class LocalSite:
             self._decide(t)
         phase = self.coupling.phase
         inputs = Inputs(dt, phase, _CUT, handle, end.sample, age, end.round_trip, end.loss, self._choices)
-        self._memory, outputs = self._pilot.step(self._memory, inputs)
+        self._memory, outputs = self.pilot.step(self._memory, inputs)
         self.outputs = outputs
         if due and phase is not Phase.DISENGAGED:
             end.give(t, outputs.setpoint)

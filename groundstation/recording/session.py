@@ -83,15 +83,16 @@ class Session:
         run: The run.
         start: Monotonic time that is 0 on the timeline, s.
         tell: Makes an event of what people must know.
+        to_file: Into a file, not only the live view.
     """
 
-    def __init__(self, run: Run, start: float, tell: Tell) -> None:
+    def __init__(self, run: Run, start: float, tell: Tell, *, to_file: bool = True) -> None:
         self._translator = Translator(run, start)
         self._tell = tell
         layout = blueprint(run.mission)
         self._file: FlightFile | None = None
         try:
-            self._file = FlightFile(run.recording, run.run_id, layout)
+            self._file = FlightFile(run.recording, run.run_id, layout) if to_file else None
         except RecordingError as error:
             tell(Severity.ALARM, str(error))
         self._feed = LiveFeed(run.viewer_url, run.run_id, layout) if run.viewer_url else None

@@ -5,15 +5,60 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-HELP = "a recorded hand through today's pilot and simulator"
-DESCRIPTION = "a recorded hand through today's pilot and simulator"
+HELP = "a recorded hand through today's pilot and simulator: what if"
+DESCRIPTION = """\
+Fly a recorded hand once more, in virtual time: the handle's very motion through today's pilot and the simulator, with
+the recording's mission, wind, seed and settings, or with others. What came out is set beside what was recorded."""
 EXAMPLES = """\
 examples:
+  groundstation replay                                         the newest flight, once more
+  groundstation replay FLIGHT.rrd --preset transparent         with other cues and helps
+  groundstation replay 2 --set control.k1=[2,2,2,1] --set mapping.fine=0.2
+  groundstation replay FLIGHT.rrd --channel delay=0.15,loss=0.05 --wind calm
+  groundstation replay FLIGHT.rrd --speed 1 --rerun            in its own time, in the viewer
+  groundstation replay FLIGHT.rrd --out what_if.rrd            as a recording, for review and report --compare
+
+exit codes: 0 done, 1 the simulated vehicle did not take off, 2 bad input, 130 stopped
 """
 RUN = "groundstation.replay.command:run"
 
 
 def fill(parser: argparse.ArgumentParser) -> None:
     """Add the options to a parser."""
-    parser.add_argument("log", nargs="?", type=Path, metavar="LOG", help="an .rrd file (default: the newest)")
-    parser.add_argument("--logs", type=Path, default=Path("logs"), metavar="DIR", help="where recordings are")
+    parser.add_argument(
+        "flight",
+        nargs="?",
+        type=Path,
+        metavar="FLIGHT",
+        help="a recording, or its number in 'review --list' (default: the newest)",
+    )
+    pilot = parser.add_argument_group("the pilot (default: as recorded)")
+    pilot.add_argument("--config", type=Path, metavar="FILE", help="settings in place of the recorded ones")
+    pilot.add_argument(
+        "--set",
+        action="append",
+        default=[],
+        metavar="TABLE.KEY=VALUE",
+        help="one setting; VALUE as in a .toml file",
+    )
+    pilot.add_argument(
+        "--preset", choices=("paper", "assisted", "transparent", "training"), help="cues and helps"
+    )
+    pilot.add_argument("--controller", metavar="MODULE:CLASS", help="your own; see docs/control.md")
+    world = parser.add_argument_group("vehicle and world (default: as recorded)")
+    world.add_argument("--mission", metavar="NAME", help="another mission's world")
+    world.add_argument("--airframe", metavar="NAME", help="a preset's name or a .toml file")
+    world.add_argument("--model", choices=("kinematic", "dynamic", "rigid_body"), help="motion model")
+    world.add_argument("--wind", choices=("calm", "mission"), default="mission", help="(default: mission)")
+    world.add_argument(
+        "--channel", default="", metavar="KEY=VALUE,...", help="such as delay=0.15,loss=0.05, each way"
+    )
+    world.add_argument("--seed", type=int, metavar="N", help="of all that is random")
+    how = parser.add_argument_group("how")
+    how.add_argument(
+        "--speed", type=float, metavar="N", help="1 to 100 times life (default: as fast as it goes)"
+    )
+    how.add_argument("--rerun", action="store_true", help="show it live in the Rerun viewer")
+    how.add_argument("--out", type=Path, metavar="FILE", help="write it as a recording (.rrd)")
+    how.add_argument("--json", action="store_true", help="the result as one JSON object")
+    how.add_argument("--logs", type=Path, default=Path("logs"), metavar="DIR", help="where recordings are")

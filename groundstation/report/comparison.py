@@ -13,7 +13,7 @@ from groundstation.report.document import Finding, Plate, Report, Table
 from groundstation.report.figures import overlay
 from groundstation.report.flight_report import Summary
 from groundstation.report.flight_tables import flat
-from groundstation.report.recorded_series import thinned
+from groundstation.review.recorded_series import thinned
 from groundstation.review.series import FlightSeries, lengths
 from groundstation.training.mission import Mission
 

@@ -14,9 +14,9 @@ from groundstation.report import flight_tables as tables
 from groundstation.report.document import Finding, Plate, Report, Table
 from groundstation.report.figures import cues, energy, errors, force, lateness, motion, timeline, velocities
 from groundstation.report.paper_findings import following
-from groundstation.report.recorded_series import recorded_series, thinned
 from groundstation.review.flight import Flight
 from groundstation.review.outcome import Outcome, outcome_of, radius_of
+from groundstation.review.recorded_series import recorded_series, thinned
 from groundstation.review.series import FlightSeries, lengths
 from groundstation.training.mission import Mission
 

@@ -18,8 +18,8 @@ from groundstation.evaluation.flight import Setup, VirtualFlight
 from groundstation.evaluation.hands import OperatorHand
 from groundstation.evaluation.sample import Sample
 from groundstation.evaluation.trial import scenario_of
-from groundstation.report.series_recorder import SeriesRecorder
 from groundstation.review.series import FlightSeries
+from groundstation.review.series_recorder import SeriesRecorder
 from groundstation.training.director import Director, Stage
 from groundstation.training.mission import Mission, find_mission, load_mission
 from sim.airframe import load_airframe

@@ -93,3 +93,10 @@ def approaches(series: FlightSeries, within: float) -> Iterator[Approach]:
 def lengths(vectors: Numbers) -> Numbers:
     """Return the norm of each row's first three numbers, (n,)."""
     return np.sqrt(np.square(vectors[:, :3]).sum(axis=1))
+
+
+def turned(vectors: Numbers, by: Numbers) -> Numbers:
+    """Turn vectors of the handle's frame into the world's, (n, 3)."""
+    c, s = np.cos(by), np.sin(by)
+    x, y, z = vectors.T
+    return np.column_stack((c * x - s * y, s * x + c * y, z))

@@ -8,19 +8,21 @@ import numpy as np
 
 from groundstation.evaluation.sample import Sample
 from groundstation.messages import Phase
-from groundstation.review.series import FlightSeries, clearances
+from groundstation.review.series import FlightSeries, clearances, turned
 from sim.scenario import Obstacle
 
 
 class SeriesRecorder:
-    """An observer of a virtual flight whose mapping's frame is the world's: its forces need no turning.
+    """An observer of a virtual flight.
 
     Args:
         obstacles: Of the world.
         radius: Of the vehicle, m.
+        heading: The handle's axes turn with the vehicle (`mapping.frame`), and the force on it is turned back.
     """
 
-    def __init__(self, obstacles: Sequence[Obstacle], radius: float) -> None:
+    def __init__(self, obstacles: Sequence[Obstacle], radius: float, *, heading: bool = False) -> None:
+        self._heading = heading
         self._obstacles = obstacles
         self._radius = radius
         self._samples: list[Sample] = []
@@ -39,17 +41,21 @@ class SeriesRecorder:
         cues = {
             name: np.array([getattr(each.cues, name) for each in outputs]) for name in outputs[0].cues._fields
         }
+        seen = np.array([each.p for each in outputs])
+        force = np.array([each.force for each in outputs])
+        if self._heading:
+            force, cues["damping"] = (turned(vectors, seen[:, 3]) for vectors in (force, cues["damping"]))
         clearance, nearest = clearances(p, self._obstacles, self._radius)
         return FlightSeries(
             t=t - t[0],
             p=p,
             p_h=np.array([each.p_h for each in outputs]),
             p_h_rate=np.array([each.p_h_rate for each in outputs]),
-            seen=np.array([each.p for each in outputs]),
+            seen=seen,
             error=np.array([each.error for each in outputs]),
             v_ref=np.array([each.v_ref for each in outputs]),
             executed=np.array([sample.v for sample in samples]),
-            force=np.array([each.force for each in outputs]),
+            force=force,
             cues=cues,
             wind=np.array([sample.wind for sample in samples]),
             clearance=clearance,

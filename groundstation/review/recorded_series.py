@@ -9,7 +9,7 @@ from groundstation.recording import lanes, schema
 from groundstation.recording.schema import Quantity
 from groundstation.review.flight import Flight
 from groundstation.review.outcome import COUPLED, radius_of, words_at
-from groundstation.review.series import FlightSeries, Numbers, clearances
+from groundstation.review.series import FlightSeries, Numbers, clearances, turned
 
 _CUES = {
     "position": schema.FORCE_CUE,
@@ -38,7 +38,7 @@ def recorded_series(flight: Flight) -> FlightSeries | None:
         clearance, nearest = clearances(p, mission.obstacle, radius_of(mission))
     heading = seen[:, 3] if flight.settings.mapping.frame == "heading" else np.zeros(len(at))
     cues = {name: _pilots(flight, quantity, coupled, t) for name, quantity in _CUES.items()}
-    cues["damping"] = _turned(cues["damping"], heading)
+    cues["damping"] = turned(cues["damping"], heading)
     return FlightSeries(
         t=at - at[0],
         p=p,
@@ -48,7 +48,7 @@ def recorded_series(flight: Flight) -> FlightSeries | None:
         error=errors[coupled],
         v_ref=_reference(flight, coupled, t, at),
         executed=np.column_stack([_between(flight, quantity, at)[:, 0] for quantity in schema.EXECUTED]),
-        force=_turned(_newest(flight, schema.HANDLE_FORCE, at), heading),
+        force=turned(_newest(flight, schema.HANDLE_FORCE, at), heading),
         cues=cues,
         wind=np.full((len(at), 3), np.nan),
         clearance=clearance,
@@ -100,10 +100,3 @@ def _between(flight: Flight, quantity: Quantity, at: Numbers) -> Numbers:
     if quantity is schema.POSITION:
         values = np.column_stack((values[:, :3], np.unwrap(values[:, 3])))
     return np.column_stack([np.interp(at, t, column) for column in values.T])
-
-
-def _turned(vectors: Numbers, by: Numbers) -> Numbers:
-    """Turn vectors of the handle's frame into the world's, (n, 3)."""
-    c, s = np.cos(by), np.sin(by)
-    x, y, z = vectors.T
-    return np.column_stack((c * x - s * y, s * x + c * y, z))

@@ -1,0 +1,183 @@
+"""`groundstation replay`: a recorded hand once more, and what came out beside what was recorded."""
+
+from __future__ import annotations
+
+import argparse
+import datetime
+import json
+import sys
+import time
+from collections.abc import Callable, Sequence
+from contextlib import ExitStack
+from pathlib import Path
+from typing import NamedTuple
+
+from groundstation.config import Settings
+from groundstation.errors import InputError
+from groundstation.evaluation.flight import VirtualFlight
+from groundstation.evaluation.remote_site import TakeOffError
+from groundstation.evaluation.sample import Observer, Sample
+from groundstation.messages import Severity
+from groundstation.pilot.chooser import beginning
+from groundstation.pilot.guest import load_controller
+from groundstation.recording.session import Session
+from groundstation.replay.changes import channel_for, mission_for, settings_for
+from groundstation.replay.figures import Row, fingerprint, rows
+from groundstation.replay.flying import Pace, Replay, What
+from groundstation.replay.records import ReplayRecorder
+from groundstation.review.choosing import chosen
+from groundstation.review.flight import Flight
+from groundstation.review.recorded_series import recorded_series
+from groundstation.run import Run
+from groundstation.run_folder import new_run_id
+from groundstation.training.mission import Mission
+
+EXIT_FAILED = 1
+_SLOWEST, _FASTEST = 1.0, 100.0
+_TELL_EVERY_S = 0.2
+
+
+class Result(NamedTuple):
+    """What a replay came to besides its figures.
+
+    Attributes:
+        collisions: With obstacles.
+        speed: How many times life.
+        decisions: Stands for all of them; the same whenever the same is replayed on the same version.
+    """
+
+    collisions: int
+    speed: float
+    decisions: str
+
+
+def run(asked: argparse.Namespace) -> int:
+    """Replay what was asked for and return the exit code.
+
+    Raises:
+        InputError: The recording, a setting, a file or the viewer cannot be had.
+    """
+    if asked.speed is not None and not _SLOWEST <= asked.speed <= _FASTEST:
+        raise InputError(
+            f"--speed {asked.speed:g}: give {_SLOWEST:g} to {_FASTEST:g}, or leave it out to fly as fast as it goes."
+        )
+    if asked.out is not None and (asked.out.suffix != ".rrd" or asked.out.exists()):
+        raise InputError(f"{asked.out}: name an .rrd file that is not there yet.")
+    flight = Flight(chosen(asked.flight, asked.logs))
+    settings, mission = settings_for(asked, flight), mission_for(asked, flight)
+    facts = flight.properties()
+    controller = asked.controller or str(facts.get("controller", "paper"))
+    seed = int(facts.get("seed", 0)) if asked.seed is None else asked.seed
+    what = What(settings, mission, load_controller(controller, settings), channel_for(asked), seed)
+    began = time.monotonic()
+    with ExitStack() as ending:
+        session = _session(asked, flight, settings, mission) if asked.out or asked.rerun else None
+        if session:
+            ending.callback(session.close)
+        ending.callback(_clear)
+        try:
+            replay = Replay(
+                flight, what, lambda virtual: _observers(asked, virtual, settings, session, ending)
+            )
+        except TakeOffError as error:
+            sys.stderr.write(f"groundstation: {error}\n")
+            return EXIT_FAILED
+        replayed = replay.fly()
+        took = time.monotonic() - began
+    recorded = recorded_series(flight)
+    assert recorded is not None
+    result = Result(replay.collisions, replay.seconds / max(took, 1e-9), fingerprint(replayed))
+    _tell(asked, rows(recorded, replayed, mission), result)
+    return 0
+
+
+def _session(asked: argparse.Namespace, flight: Flight, settings: Settings, mission: Mission) -> Session:
+    """Return where the replay is recorded and shown."""
+    url = ""
+    if asked.rerun:
+        from groundstation.recording.live import start_viewer
+
+        url = start_viewer()
+    out = asked.out or Path(f".{flight.path.stem}.replay.rrd")
+    run = Run(
+        run_id=new_run_id(),
+        url=f"replay of {flight.path.name}",
+        simulated=True,
+        device="recorded hand",
+        mission=mission,
+        mission_path="",
+        settings=settings,
+        log=str(out.with_suffix("")),
+        viewer_url=url,
+        started=datetime.datetime.now().astimezone().isoformat(timespec="milliseconds"),
+        pilot=str(flight.properties().get("pilot", "")),
+    )
+
+    def tell(severity: Severity, words: str) -> None:
+        if severity is not Severity.INFO:
+            sys.stderr.write(f"{words}\n")
+
+    return Session(run, 0.0, tell, to_file=asked.out is not None)
+
+
+def _observers(
+    asked: argparse.Namespace,
+    virtual: VirtualFlight,
+    settings: Settings,
+    session: Session | None,
+    ending: ExitStack,
+) -> tuple[Observer, ...]:
+    observers: list[Observer] = [_Progress()] if sys.stderr.isatty() else []
+    if session:
+        recorder = ReplayRecorder(session, virtual.local.pilot, beginning(settings).choices)
+        ending.callback(recorder.flush)
+        observers.append(recorder)
+    if asked.speed:
+        observers.append(Pace(asked.speed))
+    return tuple(observers)
+
+
+class _Progress:
+    """Tells on a terminal, in one line that changes, how far it is."""
+
+    def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
+        self._clock, self._next = clock, 0.0
+
+    def __call__(self, sample: Sample) -> None:
+        if (now := self._clock()) >= self._next:
+            self._next = now + _TELL_EVERY_S
+            sys.stderr.write(f"\r\x1b[K{sample.t:.1f} s, {sample.phase.name.lower()}")
+            sys.stderr.flush()
+
+
+def _clear() -> None:
+    if sys.stderr.isatty():
+        sys.stderr.write("\r\x1b[K")
+        sys.stderr.flush()
+
+
+def _tell(asked: argparse.Namespace, found: Sequence[Row], result: Result) -> None:
+    """Print what came out."""
+    if asked.json:
+        print(json.dumps(_as_json(found, result)))
+        return
+    print(_table(found))
+    print(f"{'collisions in the replay':<40}{result.collisions:>12}")
+    print(f"\n{result.speed:.0f} × life; decisions {result.decisions}")
+    if asked.out:
+        print(asked.out)
+
+
+def _table(found: Sequence[Row]) -> str:
+    lines = [f"{'':<28}{'recorded':>12}{'replayed':>12}"]
+    for row in found:
+        cells = "".join(("" if value is None else f"{value:.3f}").rjust(12) for value in row[2:])
+        lines.append(f"{row.name + ', ' + row.unit:<28}{cells}")
+    return "\n".join(lines)
+
+
+def _as_json(found: Sequence[Row], result: Result) -> dict[str, object]:
+    numbers = {
+        f"{row.name} ({row.unit})": {"recorded": row.recorded, "replayed": row.replayed} for row in found
+    }
+    return {"figures": numbers, **result._asdict()}

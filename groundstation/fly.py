@@ -36,10 +36,8 @@ def fly(asked: argparse.Namespace) -> int:
     _check(asked)
     sweep_dead_runs()
     run = plan(asked)
-    # Ended from outside, or the terminal closed: leave by the same way as always, children first.
-    for number in (signal.SIGTERM, signal.SIGHUP):
-        signal.signal(number, _leave)
-    options = _sim_options(asked)
+    leave_when_told()
+    options = sim_options(asked)
     with running(run, "headless" if asked.headless else "screen", options) as (bus, supervisor):
         if asked.headless:
             from groundstation.headless import fly_headless
@@ -48,6 +46,12 @@ def fly(asked: argparse.Namespace) -> int:
         from groundstation.tui.app import fly_on_screen
 
         return fly_on_screen(run, bus, supervisor)
+
+
+def leave_when_told() -> None:
+    """Ended from outside, or the terminal closed: leave by the same way as always, children first."""
+    for number in (signal.SIGTERM, signal.SIGHUP):
+        signal.signal(number, _leave)
 
 
 def _leave(number: int, _frame: object) -> NoReturn:
@@ -180,7 +184,8 @@ def _check_controller(spec: str, settings: Settings) -> None:
         raise InputError(f"control.airframe: {error}") from error
 
 
-def _sim_options(asked: argparse.Namespace) -> tuple[str, ...]:
+def sim_options(asked: argparse.Namespace) -> tuple[str, ...]:
+    """Return what the simulated vehicle is started with."""
     options = ["--seed", str(asked.seed)]
     if asked.airframe:
         options += ["--airframe", asked.airframe]

@@ -11,14 +11,16 @@ import sys
 import time
 from collections.abc import Callable
 from enum import Enum
+from typing import NamedTuple
 
+from drivers.device import ZERO3
 from drivers.stick import StickSender
 from groundstation import config
 from groundstation.bus import Bus
 from groundstation.console import Console, Snapshot
 from groundstation.errors import InputError
-from groundstation.messages import CommandAnswer, CommandKind, Health, Phase
-from groundstation.pilot.mapping import RateMapping
+from groundstation.messages import CommandAnswer, CommandKind, Health, Phase, ServoReport
+from groundstation.pilot.mapping import Displacement, RateMapping
 from groundstation.processes import Supervisor
 from groundstation.run import Run
 from groundstation.training.director import Director, Stage
@@ -28,6 +30,7 @@ from groundstation.training.summary import Narrator, summarise
 from sim.operator import Operator
 
 TURN_S = 0.02
+CENTRE = Displacement(ZERO3, 0.0)
 _STEP_S = 20.0
 _RETRY_S = 1.0
 # Beyond the mission's own limit the flight is given up and landed, s.
@@ -74,14 +77,14 @@ class HeadlessFlight:
         mission: What to fly.
         console: The operator's side of the bus.
         director: Follows the mission.
-        hand: The simulated operator and the arm that does what they want.
+        hand: Who moves the handle.
 
     Attributes:
         step: What the flight is at.
         failure: Why it was given up, in words; empty while all is well.
     """
 
-    def __init__(self, mission: Mission, console: Console, director: Director, hand: Hand) -> None:
+    def __init__(self, mission: Mission, console: Console, director: Director, hand: HandleMover) -> None:
         self._mission = mission
         self._console = console
         self._director = director
@@ -139,7 +142,7 @@ class HeadlessFlight:
         return self.step is Step.LAND and not status.armed and self._director.stage in _DOWN
 
     def _flown(self, view: Snapshot) -> bool:
-        if self._director.stage is Stage.RETURNING:
+        if self._hand.flown(self._director):
             return True
         if view.pilot is not None and view.pilot.phase == Phase.DISENGAGED:
             self.failure = f"the hand was uncoupled: {view.pilot.reason.decode(errors='replace')}"
@@ -170,7 +173,43 @@ def _missing(view: Snapshot) -> str:
     return "the servo has not started"
 
 
-class Hand:
+class HandleMover:
+    """Turns what is wanted of the vehicle into where the handle should be, and tells the scripted hand.
+
+    Args:
+        mapping: The mapping the pilot flies with.
+        sender: Takes the wish to the scripted hand.
+        clock: Monotonic seconds.
+    """
+
+    def __init__(self, mapping: config.Mapping, sender: StickSender, clock: Callable[[], float]) -> None:
+        self._settings = mapping
+        self._mapping: RateMapping | None = None
+        self._workspace = 0.0
+        self._sender = sender
+        self._clock = clock
+
+    def move(self, view: Snapshot, *, flying: bool) -> None:
+        """Hold the handle where it is wanted; at the centre while there is nothing to fly."""
+        position, twist = CENTRE
+        device, state = view.device, view.vehicle
+        if device and device.workspace != self._workspace:
+            self._workspace = device.workspace
+            self._mapping = RateMapping(self._settings, device.workspace)
+        if flying and self._mapping and state and state.valid:
+            position, twist = self.wish(view, self._mapping)
+        self._sender.send(position, twist, 0, self._clock())
+
+    def wish(self, view: Snapshot, mapping: RateMapping) -> Displacement:  # noqa: ARG002 - it wants nothing
+        """Return where the handle should be, as the vehicle is seen."""
+        return CENTRE
+
+    def flown(self, director: Director) -> bool:
+        """Say whether there is nothing more to fly."""
+        return director.stage is Stage.RETURNING
+
+
+class Hand(HandleMover):
     """The simulated operator's head and arm: from what is seen to where the handle should be.
 
     Args:
@@ -189,29 +228,18 @@ class Hand:
         seed: int,
         clock: Callable[[], float],
     ) -> None:
+        super().__init__(mapping, sender, clock)
         route, target = mission.route, mission.target
         self._operator = Operator(route, target.position, seed=seed) if target else None
-        self._settings = mapping
-        self._mapping: RateMapping | None = None
-        self._workspace = 0.0
-        self._sender = sender
-        self._clock = clock
 
-    def move(self, view: Snapshot, *, flying: bool) -> None:
-        """Hold the handle where the operator wants it; at the centre while there is nothing to fly."""
-        displacement = ((0.0, 0.0, 0.0), 0.0)
+    def wish(self, view: Snapshot, mapping: RateMapping) -> Displacement:
+        """Return what the operator decides."""
         state = view.vehicle
-        device = view.device
-        if device and device.workspace != self._workspace:
-            self._workspace = device.workspace
-            self._mapping = RateMapping(self._settings, device.workspace)
-        if flying and self._operator and self._mapping and state and state.valid:
-            x, y, z, yaw = state.position
-            vx, vy, vz, _ = state.velocity
-            wish = self._operator.decide(view.t, (x, y, z, yaw), (vx, vy, vz))
-            displacement = self._mapping.displacement_for(wish, yaw)
-        position, twist = displacement
-        self._sender.send(position, twist, 0, self._clock())
+        if self._operator is None or state is None:
+            return CENTRE
+        x, y, z, yaw = state.position
+        vx, vy, vz, _ = state.velocity
+        return mapping.displacement_for(self._operator.decide(view.t, (x, y, z, yaw), (vx, vy, vz)), yaw)
 
 
 def fly_headless(run: Run, bus: Bus, supervisor: Supervisor, *, as_json: bool, seed: int) -> int:
@@ -219,11 +247,30 @@ def fly_headless(run: Run, bus: Bus, supervisor: Supervisor, *, as_json: bool, s
     mission = run.mission
     if mission is None:
         raise InputError("--headless needs a --mission to fly.")
+    hand = Hand(mission, run.settings.mapping, StickSender(str(run.hand)), seed, time.monotonic)
+    flown = fly_steps(mission, bus, supervisor, hand)
+    return summarise(run, flown.director, flown.servo, flown.failure, as_json=as_json)
+
+
+class Flown(NamedTuple):
+    """A headless flight that is over.
+
+    Attributes:
+        director: Has followed the mission.
+        servo: How well the servo kept its time.
+        failure: Why it was given up; "" where it was not.
+    """
+
+    director: Director
+    servo: ServoReport | None
+    failure: str
+
+
+def fly_steps(mission: Mission, bus: Bus, supervisor: Supervisor, hand: HandleMover) -> Flown:
+    """Fly from connecting to landing with a hand, telling on stderr how it goes; the processes are ended."""
     console = Console(bus, "headless")
     follower = MissionFollower(mission, bus)
     director = follower.director
-    sender = StickSender(str(run.hand))
-    hand = Hand(mission, run.settings.mapping, sender, seed, time.monotonic)
     flight = HeadlessFlight(mission, console, director, hand)
     narrator = Narrator(sys.stderr)
     view = console.snapshot()
@@ -238,4 +285,4 @@ def fly_headless(run: Run, bus: Bus, supervisor: Supervisor, *, as_json: bool, s
         time.sleep(TURN_S)
     narrator.close()
     supervisor.stop()
-    return summarise(run, director, view.servo, flight.failure, as_json=as_json)
+    return Flown(director, view.servo, flight.failure)

@@ -27,11 +27,13 @@ from groundstation.messages import (
 from groundstation.recording import lanes, schema
 from groundstation.recording.batch import Batch
 from groundstation.recording.session import Session
+from groundstation.review.choosing import chosen
 from groundstation.review.earlier import settings_from
 from groundstation.review.flight import Flight
 from groundstation.review.listing import list_flights
 from groundstation.review.rrd import is_growing, is_whole, mend, open_reader
-from groundstation.review.show import list_all, review, show
+from groundstation.review.show import review
+from groundstation.review.table import list_all
 
 WINDOW = {"DISPLAY": ":0"}
 RECORDINGS = Path(__file__).parent / "recordings"
@@ -232,4 +234,4 @@ def test_a_folder_without_flights_is_said(tmp_path, capsys):
     assert list_all(tmp_path) == 0
     assert "No flights" in capsys.readouterr().out
     with pytest.raises(InputError, match="no recorded flights"):
-        show(None, tmp_path)
+        chosen(None, tmp_path)

@@ -5,12 +5,14 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-HELP = "look at recorded flights in the Rerun viewer"
-DESCRIPTION = "Open a recording in the Rerun viewer; without one, the newest."
+HELP = "list recorded flights, look at one or two in the Rerun viewer"
+DESCRIPTION = "Open a recording in the Rerun viewer, or two side by side; without one, the newest."
 EXAMPLES = """\
 examples:
   groundstation review                        the newest flight
-  groundstation review --list                 what there is
+  groundstation review --list                 what there is, with result and score
+  groundstation review 3                      the third of the list
+  groundstation review A.rrd B.rrd            two flights in one view, from the moment the hand was coupled
   groundstation review FLIGHT.rrd --web       in a browser, on a machine without a display
 """
 RUN = "groundstation.review.show:run"
@@ -18,7 +20,19 @@ RUN = "groundstation.review.show:run"
 
 def fill(parser: argparse.ArgumentParser) -> None:
     """Add the options to a parser."""
-    parser.add_argument("log", nargs="?", type=Path, metavar="LOG", help="an .rrd file (default: the newest)")
+    parser.add_argument(
+        "flights",
+        nargs="*",
+        type=Path,
+        metavar="FLIGHT",
+        help="one or two recordings, or their numbers in the list (default: the newest)",
+    )
     parser.add_argument("--list", action="store_true", help="list the recorded flights, newest first")
+    parser.add_argument("--mission", metavar="NAME", help="with --list: flights of this mission only")
+    parser.add_argument("--pilot", metavar="NAME", help="with --list: flights of this pilot only")
+    parser.add_argument("--json", action="store_true", help="with --list: as JSON")
     parser.add_argument("--web", action="store_true", help="serve the viewer to a browser on this machine")
+    parser.add_argument(
+        "--out", type=Path, metavar="FILE", help="with two flights: keep the comparison (.rrd)"
+    )
     parser.add_argument("--logs", type=Path, default=Path("logs"), metavar="DIR", help="where recordings are")

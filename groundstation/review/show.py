@@ -6,16 +6,21 @@ import argparse
 import os
 import subprocess
 import sys
+import tempfile
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
 from groundstation.errors import InputError
 from groundstation.recording.live import free_tcp_port, has_display, page_address
 from groundstation.recording.program import ENVIRONMENT, LOOPBACK, program
-from groundstation.review.listing import Entry, list_flights
+from groundstation.review.choosing import chosen
+from groundstation.review.table import list_all
 
 # A flight is looked at whole: data that do not fit drop out, the oldest first.
 _MEMORY = ("--memory-limit", "75%", "--server-memory-limit", "2GB")
+
+# One view has room for so many flights.
+_MOST = 2
 
 Spawn = Callable[[Sequence[str]], int]
 
@@ -26,34 +31,41 @@ def run(asked: argparse.Namespace) -> int:
     Raises:
         InputError: There is no such recording, or no way to show it.
     """
-    return list_all(asked.logs) if asked.list else show(asked.log, asked.logs, web=asked.web)
+    if asked.list:
+        return list_all(asked.logs, mission=asked.mission, pilot=asked.pilot, as_json=asked.json)
+    if len(asked.flights) > _MOST:
+        raise InputError("two flights fit in one view; 'report --compare' takes more.")
+    paths = [chosen(named, asked.logs) for named in asked.flights] or [chosen(None, asked.logs)]
+    if len(paths) == 1:
+        if asked.out:
+            raise InputError("--out keeps the comparison of two flights; name two.")
+        return review(paths[0], web=asked.web)
+    return compare(paths, asked.out, web=asked.web)
 
 
-def list_all(folder: Path) -> int:
-    """Print the flights in a folder, newest first, a line each; return the exit code."""
-    entries = list_flights(folder)
-    for entry in entries:
-        sys.stdout.write(f"{_line(entry)}\n")
-    if not entries:
-        sys.stdout.write(f"No flights in {folder}.\n")
-    return 0
-
-
-def show(log: Path | None, folder: Path, *, web: bool = False) -> int:
-    """Open a recording in the viewer and wait until it is closed.
+def compare(paths: Sequence[Path], out: Path | None, *, web: bool = False) -> int:
+    """Open two recordings in one view and wait until it is closed; return the exit code.
 
     Args:
-        log: The recording; None for the newest in the folder.
-        folder: Where recordings are.
+        paths: Of the two.
+        out: Where the comparison is kept; None for not at all.
         web: In a browser on this machine instead of a window.
 
-    Returns:
-        The exit code.
-
     Raises:
-        InputError: There is no such recording, or no way to show it.
+        InputError: A recording cannot be read, or there is no way to show them.
     """
-    return review(log or _newest(folder), web=web)
+    from groundstation.review.comparison import write_comparison
+
+    if out is not None:
+        if out.suffix != ".rrd" or not out.parent.is_dir():
+            raise InputError(f"{out}: name an .rrd file in a folder that is there.")
+        write_comparison(paths, out)
+        print(out)
+        return review(out, web=web) if web or has_display(os.environ) else 0
+    with tempfile.TemporaryDirectory(prefix="groundstation-compare-") as folder:
+        path = Path(folder) / f"{paths[0].stem} and {paths[1].stem}.rrd"
+        write_comparison(paths, path)
+        return review(path, web=web)
 
 
 def review(
@@ -86,13 +98,6 @@ def review(
     return (spawn or _run)([*command, str(log.resolve())])
 
 
-def _newest(folder: Path) -> Path:
-    entries = list_flights(folder)
-    if not entries:
-        raise InputError(f"{folder}: there are no recorded flights; name a recording or choose --logs.")
-    return entries[0].path
-
-
 def _put_in_order(log: Path) -> None:
     from groundstation.review.rrd import is_growing, is_whole, mend, open_reader
 
@@ -116,9 +121,3 @@ def _run(command: Sequence[str]) -> int:
         )
     except KeyboardInterrupt:
         return 0
-
-
-def _line(entry: Entry) -> str:
-    length = "not ended" if entry.duration is None else f"{entry.duration:7.1f} s"
-    started = entry.started.astimezone().strftime("%Y-%m-%d %H:%M:%S")
-    return f"{started}  {length:>9}  {entry.size / 1e6:7.1f} MB  {entry.mission or '-':<12}  {entry.path}"

@@ -224,7 +224,7 @@ def test_flights_are_listed_newest_first_with_mission_and_length(tmp_path, unfin
     assert started == sorted(started, reverse=True)
 
     assert list_all(tmp_path) == 0
-    lines = capsys.readouterr().out.splitlines()
+    _, *lines = capsys.readouterr().out.splitlines()
     assert len(lines) == 3
     assert any("paper" in line and "1.0 s" in line for line in lines)
 

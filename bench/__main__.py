@@ -24,6 +24,8 @@ BENCHES = {
     "pilot_step": "cost and memory of a tick of the pilot with everything on",
     "stability": "how well the drone follows, and whether anything swings at 0.7 s round trip",
     "evaluate": "how many times as fast as real time flights are evaluated",
+    "recording": "what recording costs: share of a core, MB a minute, rows lost",
+    "report": "report on a flight of ten minutes, and loading it",
     "shield": "full-stick adversaries through obstacle fields, with and without the guard",
 }
 

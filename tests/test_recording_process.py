@@ -85,6 +85,15 @@ def test_a_killed_recorder_leaves_what_was_flown(tmp_path):
     assert flight.properties()["mission"] == "paper"
 
 
+@pytest.mark.parametrize("after", [0.31, 1.13, 1.94])
+def test_killed_at_any_moment_it_leaves_all_but_the_last_second(tmp_path, after):
+    with recorder(a_run(tmp_path / "flight")) as running:
+        sent = running.publish_handles(round(after * 1000))
+        running.end(signal.SIGKILL)
+    kept = len(Flight(running.path).series(schema.HANDLE_FORCE).t)
+    assert len(sent) - 1000 <= kept <= len(sent)
+
+
 def test_a_recorder_whose_supervisor_hangs_up_ends_its_file(tmp_path):
     with recorder(a_run(tmp_path / "flight")) as running:
         running.publish_handles(200)

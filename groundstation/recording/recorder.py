@@ -20,7 +20,7 @@ from groundstation.run import Run
 ROLE = "recorder"
 _TURN_S = 0.05
 # Rows cost per call, not per row: large batches for the file, small ones where somebody watches.
-_BATCH_S = 0.5
+_BATCH_S = 0.75
 _LIVE_BATCH_S = 0.1
 _NICENESS = 10
 

@@ -21,7 +21,7 @@ from groundstation.review.series import FlightSeries, lengths
 from groundstation.training.mission import Mission
 
 # More samples a page's width does not show, and a mail does not like.
-_SHOWN = 1500
+_SHOWN = 1200
 _LANES = (lanes.MODE, lanes.PHASE, lanes.STAGE, lanes.GUARD, lanes.MAPPING, lanes.PRESET)
 
 

@@ -110,13 +110,13 @@ def run(capsys, *arguments):
 
 
 def test_it_writes_an_airframe_that_flies_and_a_page(tmp_path, capsys):
-    raw, chi = a_flight(seconds=60.0)
+    raw, chi = a_flight(seconds=24.0)
     flight = a_table(tmp_path / "flight.csv", raw)
     preset, page = tmp_path / "mine.toml", tmp_path / "mine.html"
     code, out, _ = run(capsys, flight, "--out", preset, "--page", page, "--json")
     assert code == 0
     found = json.loads(out)
-    assert list(found["chi"].values()) == pytest.approx(chi, rel=0.03)
+    assert list(found["chi"].values()) == pytest.approx(chi, rel=0.1)
     assert found["flights"]["flight.csv"]["r2_free"] == pytest.approx([1.0] * 4, abs=0.02)
     airframe = load_airframe(str(preset))
     assert astuple(airframe.chi) == tuple(found["chi"].values())
@@ -131,7 +131,7 @@ def test_it_writes_an_airframe_that_flies_and_a_page(tmp_path, capsys):
 
 
 def test_the_table_tells_what_was_not_learned_from(tmp_path, capsys):
-    flights = [a_table(tmp_path / f"{seed}.csv", a_flight(seconds=30.0, seed=seed)[0]) for seed in (0, 1)]
+    flights = [a_table(tmp_path / f"{seed}.csv", a_flight(seconds=16.0, seed=seed)[0]) for seed in (0, 1)]
     code, out, _ = run(capsys, flights[0], "--validate", flights[1])
     assert code == 0
     assert "1.csv (not learned from)" in out

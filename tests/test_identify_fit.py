@@ -17,7 +17,7 @@ from sim.models.dynamic import astuple, respond
 
 @pytest.fixture(scope="module")
 def found_and_chi():
-    raw, chi = a_flight(seconds=90.0, delay=0.1)
+    raw, chi = a_flight(seconds=60.0, delay=0.1)
     flight = on_grid("flight", raw)
     return identify([flight]), flight, chi
 

@@ -6,6 +6,7 @@ import json
 import shutil
 
 import pytest
+import rerun as rr
 from test_report_flight import recorded
 
 from groundstation import cli
@@ -123,6 +124,22 @@ def test_what_is_wrong_is_one_sentence(folder, tmp_path, capsys, arguments, word
     assert code == 2
     assert words in err
     assert len(err.strip().splitlines()) == 1
+
+
+@pytest.mark.parametrize("command", [["report"], ["replay"], ["review", "--list"]])
+def test_a_recording_of_something_else_is_told(tmp_path, capsys, command):
+    path = tmp_path / "foreign.rrd"
+    stream = rr.RecordingStream("somebody_else")
+    stream.save(path)
+    stream.log("points", rr.Points3D([(0.0, 0.0, 0.0)]))
+    stream.flush()
+    stream.disconnect()
+    with pytest.raises(SystemExit) as end:
+        cli.main([*command, "--logs", str(tmp_path)])
+    told = capsys.readouterr()
+    assert end.value.code == (0 if "--list" in command else 2)
+    assert "not of a flight" in told.err or "no flight of this program" in told.out
+    assert "Traceback" not in told.err
 
 
 def test_a_flight_reads_the_same_after_it_was_listed(folder):

@@ -12,6 +12,7 @@ import numpy.typing as npt
 from rerun.chunk import Chunk
 
 from groundstation.config import Settings
+from groundstation.errors import InputError
 from groundstation.recording import entities, schema
 from groundstation.recording.lanes import Lane
 from groundstation.recording.schema import Quantity
@@ -103,23 +104,35 @@ class Flight:
 
     @property
     def mission(self) -> Mission | None:
-        """The mission flown, or None."""
-        return msgspec.json.decode(self.properties()["mission_json"], type=Mission | None)
+        """The mission flown, or None.
+
+        Raises:
+            InputError: The recording is of something else than a flight.
+        """
+        return msgspec.json.decode(self._facts()["mission_json"], type=Mission | None)
 
     @property
     def settings(self) -> Settings:
         """The settings flown with.
 
         Raises:
-            InputError: The flight was recorded by a later version of this program.
+            InputError: The flight was recorded by a later version of this program, or is none.
         """
-        return settings_from(self.properties())
+        return settings_from(self._facts())
 
     @property
     def duration(self) -> float:
         """From the start of the run to the last row of all, s; 0 of an empty recording."""
         ends = [_seconds(chunk) for chunks in self._timed.values() for chunk in chunks]
         return max((float(times.max()) for times in ends if len(times)), default=0.0)
+
+    def _facts(self) -> dict[str, Any]:
+        facts = self.properties()
+        if not {"schema", "mission_json", "settings_json"} <= facts.keys():
+            raise InputError(
+                f"{self.path}: is a Rerun recording, but not of a flight; give one that this program made."
+            )
+        return facts
 
     def _words(self, path: str, *components: str) -> Iterator[tuple[float, dict[str, str]]]:
         for chunk in self._timed.get(path, ()):

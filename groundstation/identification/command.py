@@ -5,14 +5,21 @@ from __future__ import annotations
 import argparse
 import json
 import sys
-from collections.abc import Sequence
+from pathlib import Path
+from typing import TextIO
+
+import numpy as np
+from msgspec.structs import astuple
 
 from groundstation.errors import InputError
-from groundstation.identification import words
-from groundstation.identification.fit import Identified, Told, identify, told
-from groundstation.identification.preset import write_preset
-from groundstation.identification.samples import Samples
+from groundstation.identification import preset, words
+from groundstation.identification.findings import Findings
+from groundstation.identification.fit import identify
+from groundstation.identification.matrix import each_on_each
+from groundstation.identification.response import LONGEST_DELAY_S
+from groundstation.identification.samples import Samples, on_grid, step_of
 from groundstation.identification.sources import read_flight
+from groundstation.identification.validate import validated
 
 
 def run(asked: argparse.Namespace) -> int:
@@ -21,46 +28,108 @@ def run(asked: argparse.Namespace) -> int:
     Raises:
         InputError: A flight cannot be used, or a file not be written.
     """
-    learned = [read_flight(path) for path in asked.flights]
-    unseen = [read_flight(path) for path in asked.validate]
-    found = identify(learned, _tell)
-    _tell("")
-    flights = [*learned, *unseen]
-    tolds = [told(found, flight) for flight in flights]
-    names = [flight.name for flight in learned]
-    if asked.json:
-        print(json.dumps(words.as_json(found, tolds)))
-    else:
-        print(words.table(found, tolds, names))
+    _check(asked)
+    progress = _Progress(sys.stderr)
+    try:
+        found = _found(asked, progress)
+        if asked.out:
+            preset.write(asked.out, asked.name or asked.out.stem, asked.like, found)
+        if asked.report:
+            progress.tell("drawing")
+            _write_report(asked.report, found)
+    finally:
+        progress.close()
+    print(json.dumps(words.as_json(found), allow_nan=False) if asked.json else words.table(found))
     if asked.out:
-        write_preset(asked.out, asked.name or asked.out.stem, asked.like, found, tolds)
-        print(f"\n{asked.out}: fly it with --sim --airframe {asked.out} --model dynamic", file=sys.stderr)
-    if asked.page:
-        _write_page(asked, found, flights, tolds, names)
+        print(f"{asked.out}: fly it with --sim --model dynamic --airframe {asked.out}", file=sys.stderr)
+        if missing := words.missing_delay(found):
+            print(missing, file=sys.stderr)
+    if asked.report:
+        print(asked.report, file=sys.stderr)
     return 0
 
 
-def _write_page(
-    asked: argparse.Namespace,
-    found: Identified,
-    flights: Sequence[Samples],
-    tolds: Sequence[Told],
-    names: Sequence[str],
-) -> None:
+def _check(asked: argparse.Namespace) -> None:
+    """Say what is wrong with a file that shall be written before anything is computed for it."""
+    for option, path, suffix in (("--out", asked.out, ".toml"), ("--report", asked.report, ".html")):
+        if path is None:
+            continue
+        if path.suffix.lower() != suffix:
+            raise InputError(f"{option} {path}: give a name that ends in {suffix}.")
+        if not path.parent.is_dir():
+            raise InputError(
+                f"{option} {path}: there is no folder {path.parent}; make it, or choose another."
+            )
+    if asked.out:
+        preset.check(asked.out)
+    preset.like(asked.like)
+
+
+def _found(asked: argparse.Namespace, progress: _Progress) -> Findings:
+    """Return all that the flights say."""
+    compared = preset.chi_of(asked.compare) if asked.compare else None
+    learned, unseen = _read([*asked.flights, *asked.validate], len(asked.flights), progress)
+    longest = 0.0 if asked.no_delay else LONGEST_DELAY_S
+    identified = identify(learned, progress.tell, longest)
+    flights = [*learned, *unseen]
+    progress.tell("validating")
+    of = identified.parameters
+    validations = [validated(of.chi, of.delays, flight) for flight in flights]
+    others = None
+    if compared is not None:
+        chi = np.array(astuple(compared))
+        others = [validated(chi, np.zeros(3), flight) for flight in flights]
+    matrix = each_on_each(learned, longest, progress.tell) if len(learned) > 1 else None
+    return Findings(identified, learned, flights, validations, matrix, asked.compare, compared, others)
+
+
+def _read(paths: list[Path], learned: int, progress: _Progress) -> tuple[list[Samples], list[Samples]]:
+    """Return the flights to learn from and the others, on the first one's step."""
+    raws = []
+    for path in paths:
+        progress.tell(f"reading {path.name}")
+        raw = read_flight(path)
+        if raw.damaged:
+            progress.note(f"{path}: is damaged; what could be read is used.")
+        raws.append((path.name, raw))
+    steps = [step_of(name, raw) for name, raw in raws]
+    flights = [on_grid(name, raw, steps[0]) for name, raw in raws]
+    return flights[:learned], flights[learned:]
+
+
+def _write_report(path: Path, found: Findings) -> None:
     from groundstation.identification.figures import report_on
     from groundstation.report.document import page
 
     try:
-        asked.page.write_text(page(report_on(found, flights, tolds, names)), encoding="utf-8")
+        path.write_text(page(report_on(found)), encoding="utf-8")
     except OSError as error:
-        raise InputError(
-            f"{asked.page}: cannot be written ({error.strerror}); choose another --page."
-        ) from error
-    print(asked.page, file=sys.stderr)
+        raise InputError(f"--report {path}: cannot be written ({error.strerror}); choose another.") from error
 
 
-def _tell(step: str) -> None:
-    """Say what is being done, on a terminal in one line that changes."""
-    if sys.stderr.isatty():
-        sys.stderr.write(f"\r\x1b[K{step}")
-        sys.stderr.flush()
+class _Progress:
+    """Tells what is being done: on a terminal one line that changes, else a line a step.
+
+    Args:
+        out: Where to.
+    """
+
+    def __init__(self, out: TextIO) -> None:
+        self._out = out
+        self._live = out.isatty()
+
+    def tell(self, step: str) -> None:
+        """Tell what is begun."""
+        self._out.write(f"\r\x1b[K{step}" if self._live else f"{step}\n")
+        self._out.flush()
+
+    def note(self, words: str) -> None:
+        """Say something that stays."""
+        self.close()
+        self._out.write(f"{words}\n")
+
+    def close(self) -> None:
+        """End the changing line."""
+        if self._live:
+            self._out.write("\r\x1b[K")
+            self._out.flush()

@@ -1,4 +1,4 @@
-"""Identification and validation: delay, regularisation, χ with its confidence, and how well it tells flights."""
+"""Identification: delays, regularisation, χ with its confidence, and what held-out parts of the flights say."""
 
 from __future__ import annotations
 
@@ -6,236 +6,180 @@ from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 
 from groundstation.errors import InputError
-from groundstation.identification.refine import normal_of, refined, solved
-from groundstation.identification.regress import LEAST, POSITIVE, regressed
+from groundstation.identification.refine import (
+    Normal,
+    Parameters,
+    normal_at,
+    refined,
+    starts_of,
+    stepped,
+    unflat,
+)
+from groundstation.identification.regress import guessed_delays, regressed
 from groundstation.identification.response import (
     CHI,
+    DELAYS,
+    LONGEST_DELAY_S,
     Windows,
-    delayed,
     flown,
-    r_squared,
+    told,
     windows,
 )
-from groundstation.identification.samples import Numbers, Samples
+from groundstation.identification.samples import Numbers, Samples, unexcited
+from groundstation.identification.validate import BLOCK_S, LEVEL, RESAMPLES, r_squared
 from sim.models.dynamic import Chi
 
-# A window's length: long enough for every response to settle, short enough for several in a short flight, s.
-WINDOW_S = 2.5
-_LONGEST_DELAY_S = 0.4
-_DELAY_STEP_S = 0.02
-_RIDGES = (0.0, 1e-5, 1e-4, 1e-3)
+_RIDGES = (0.0, 1e-3, 1e-2, 3e-2)
+# Of the first estimates, from which the search begins.
+_FIRST_RIDGE = 1e-4
 _FOLDS = 4
-_RESAMPLES = 400
-_LEVEL = (2.5, 97.5)
-# How far ahead a prediction looks beside the one of a single sample, s.
-AHEAD_S = 0.5
 _FEWEST_WINDOWS = 4
+# A weight is preferred to the one before it if it tells so much more of what was held out.
+_BETTER = 1e-4
 
 Tell = Callable[[str], None]
-
-
-class Told(NamedTuple):
-    """How well a response tells a flight, each (4,) by axis.
-
-    Attributes:
-        flight: Its name.
-        one_step: R² of the prediction one sample ahead.
-        ahead: R² of that `AHEAD_S` ahead.
-        free: R² of the free flight through all of it.
-        rms: What the free flight leaves, m/s and rad/s.
-    """
-
-    flight: str
-    one_step: Numbers
-    ahead: Numbers
-    free: Numbers
-    rms: Numbers
 
 
 class Identified(NamedTuple):
     """What was found.
 
     Attributes:
-        parameters: (13,), as in `response.PARAMETERS`.
-        low, high: (13,), 95 % confidence, by resampling the windows.
-        delay: From a reference's sending to its effect, s.
+        parameters: χ, delays, and the steady push of each flight.
+        low, high: (13,), 95 % confidence of χ and the delays, by drawing the windows anew.
         ridge: The prior's weight that told held-out windows best.
         crossed: (4,), R² of windows that were held out, by axis.
-        condition: Of the normal equations on χ's own scale: above some 1e4 not all of χ can be told apart.
-        step: The samples', s.
+        crossed_regression: (4,), the same of the regression alone.
+        longest_delay: That was looked for, s; 0 if none was.
+        condition: Of χ's normal equations on χ's own scale: above some 1e4 not all of χ can be told apart.
     """
 
-    parameters: Numbers
+    parameters: Parameters
     low: Numbers
     high: Numbers
-    delay: float
     ridge: float
     crossed: Numbers
+    crossed_regression: Numbers
+    longest_delay: float
     condition: float
-    step: float
 
     @property
     def chi(self) -> Chi:
         """χ as an airframe has it."""
-        return Chi(*(float(value) for value in self.parameters[:CHI]))
+        return Chi(*(float(value) for value in self.parameters.chi))
 
 
-def identify(flights: Sequence[Samples], tell: Tell = lambda _words: None) -> Identified:
+def identify(
+    flights: Sequence[Samples], tell: Tell = lambda _words: None, longest_delay: float = LONGEST_DELAY_S
+) -> Identified:
     """Identify the response from one or more flights of a vehicle.
 
     Args:
-        flights: With the same step, within a tenth of a percent; else each is used on the first one's.
+        flights: With the same step.
         tell: Told what is being done.
+        longest_delay: That is looked for, s; 0 takes references to act at once, all lateness is χ's then.
 
     Raises:
-        InputError: The flights are too short.
+        InputError: The flights are too short, or too little was asked of an axis.
     """
-    together = joined(flights)
-    tell("looking for the delay")
-    delay = _delay(together)
-    pieces = windows(together, WINDOW_S, delay)
-    if pieces.v.shape[1] < _FEWEST_WINDOWS:
+    pieces = _pieces(flights, longest_delay)
+    tell("estimating delays and a first χ")
+    first = _first(pieces, len(flights))
+    start = refined(pieces, first, _FIRST_RIDGE)
+    tell("cross-validating")
+    ridge = _ridge(pieces, normal_at(pieces, start), start)
+    crossed = _crossed(pieces, lambda training: refined(pieces.only(training), start, ridge))
+    regression = _crossed(pieces, lambda training: _first(pieces.only(training), len(flights)))
+    tell("fitting")
+    parameters = refined(pieces, start, ridge)
+    normal = normal_at(pieces, parameters)
+    low, high = _confidence(pieces, normal, parameters, ridge, tell)
+    return Identified(parameters, low, high, ridge, crossed, regression, longest_delay, _condition(normal))
+
+
+def _pieces(flights: Sequence[Samples], longest_delay: float) -> Windows:
+    name = " + ".join(flight.name for flight in flights)
+    if still := unexcited(flights):
         raise InputError(
-            f"{together.name}: has {pieces.v.shape[1]} stretches of {WINDOW_S:g} s, {_FEWEST_WINDOWS} are needed; "
+            f"{name}: hardly anything was asked of {' and '.join(still)}; fly all four axes, "
+            "'groundstation excite' does."
+        )
+    pieces = windows(flights, BLOCK_S, longest_delay)
+    if pieces.number < _FEWEST_WINDOWS:
+        raise InputError(
+            f"{name}: has {pieces.number} stretches of {BLOCK_S:g} s, {_FEWEST_WINDOWS} are needed; "
             "fly longer, or give several flights."
         )
-    tell("cross-validating")
-    ridge, crossed = _ridge(together, pieces, delay)
-    tell("fitting")
-    parameters = refined(pieces, regressed(together, delay, ridge), ridge)
-    tell("resampling")
-    low, high = _confidence(pieces, parameters, ridge)
-    return Identified(
-        parameters, low, high, delay, ridge, crossed, _condition(pieces, parameters), together.dt
-    )
+    return pieces
 
 
-def joined(flights: Sequence[Samples]) -> Samples:
-    """Return the stretches of several flights on the first one's step."""
-    first = flights[0]
-    stretches = [each for flight in flights for each in stepped(flight, first.dt)]
-    return Samples(" + ".join(flight.name for flight in flights), first.dt, tuple(stretches))
+def _first(pieces: Windows, flights: int) -> Parameters:
+    delays = guessed_delays(pieces, _FIRST_RIDGE)
+    return Parameters(regressed(pieces, delays, _FIRST_RIDGE), delays, np.zeros((flights, 3)))
 
 
-def stepped(flight: Samples, dt: float) -> Sequence[tuple[Numbers, Numbers]]:
-    """Return a flight's stretches on another step, s."""
-    if abs(flight.dt - dt) < 1e-3 * dt:
-        return flight.stretches
-    changed: list[tuple[Numbers, Numbers]] = []
-    for v, ref in flight.stretches:
-        t = np.arange(len(v)) * flight.dt
-        grid = np.arange(0.0, t[-1], dt)
-        held = np.clip(np.searchsorted(t, grid + 1e-9, side="right") - 1, 0, len(t) - 1)
-        changed.append((np.column_stack([np.interp(grid, t, column) for column in v.T]), ref[held]))
-    return changed
+def _ridge(pieces: Windows, normal: Normal, now: Parameters) -> float:
+    """Return the prior's weight that tells held-out windows best, a Gauss-Newton step away from the estimate."""
+    row = now.flat()
 
+    def told_with(ridge: float) -> float:
+        def fitted(training: npt.NDArray[np.intp]) -> Parameters:
+            squares, slopes = normal.squares[training].sum(axis=0), normal.slopes[training].sum(axis=0)
+            return unflat(stepped(squares, slopes, row, ridge))
 
-def told(found: Identified, flight: Samples) -> Told:
-    """Return how well a response tells a flight; the steady push of the flights it is from is left out."""
-    flight = Samples(flight.name, found.step, tuple(stepped(flight, found.step)))
-    still = found.parameters.copy()
-    still[CHI:] = 0.0
-    one_step, ahead = (_ahead(flight, still, found.delay, seconds) for seconds in (flight.dt, AHEAD_S))
-    measured: list[Numbers] = []
-    ways: list[Numbers] = []
-    for v, way in free_flights(found, flight):
-        measured.append(v)
-        ways.append(way)
-    everything, all_ways = np.concatenate(measured), np.concatenate(ways)
-    rms = np.sqrt(np.square(everything - all_ways).mean(axis=0))
-    return Told(flight.name, one_step, ahead, r_squared(everything, all_ways), rms)
+        return float(np.nanmean(_crossed(pieces, fitted)))
 
-
-def free_flights(found: Identified, flight: Samples) -> list[tuple[Numbers, Numbers]]:
-    """Return measured and freely flown velocities of each stretch, (n, 4) each; only the first sample is given."""
-    still = found.parameters.copy()
-    still[CHI:] = 0.0
-    pairs: list[tuple[Numbers, Numbers]] = []
-    for v, ref in flight.stretches:
-        start = int(np.ceil(found.delay / flight.dt))
-        late = delayed(ref, found.delay / flight.dt)[start:]
-        whole = Windows(v[start:, None], late[:, None], flight.dt)
-        pairs.append((v[start:], flown(whole, still)[:, 0]))
-    return pairs
-
-
-def _ahead(flight: Samples, parameters: Numbers, delay: float, seconds: float) -> Numbers:
-    """Return R² of the velocity so far ahead, told from every sample on, (4,)."""
-    steps = max(1, round(seconds / flight.dt))
-    measured: list[Numbers] = []
-    ways: list[Numbers] = []
-    for v, ref in flight.stretches:
-        late = delayed(ref, delay / flight.dt)
-        places = np.arange(int(np.ceil(delay / flight.dt)), len(v) - steps)
-        offsets = np.arange(steps + 1)[:, None]
-        pieces = Windows(v[places + offsets], late[places + offsets], flight.dt)
-        measured.append(pieces.v[-1])
-        ways.append(flown(pieces, parameters)[-1])
-    return r_squared(np.concatenate(measured), np.concatenate(ways))
-
-
-def _delay(samples: Samples) -> float:
-    """Return the delay with which the refined response flies the windows best, s, between the steps of the search."""
-    delays = np.arange(0.0, _LONGEST_DELAY_S + 1e-9, _DELAY_STEP_S)
-    longest = windows(samples, WINDOW_S, float(delays[-1])).v.shape[1]
-    costs: list[float] = []
-    start = regressed(samples, 0.0, _RIDGES[1])
-    for delay in delays:
-        pieces = windows(samples, WINDOW_S, float(delay)).only(np.arange(longest))
-        start = refined(pieces, start, _RIDGES[1], rounds=4)
-        costs.append(float(normal_of(pieces, start).left.sum()))
-        if len(costs) > 4 and costs[-1] > 1.5 * min(costs):
-            break
-    best = int(np.argmin(costs))
-    if 0 < best < len(costs) - 1:
-        before, at, after = costs[best - 1 : best + 2]
-        bend = before - 2.0 * at + after
-        return (
-            float(delays[best] + 0.5 * _DELAY_STEP_S * (before - after) / bend)
-            if bend > 0.0
-            else float(delays[best])
-        )
-    return float(delays[best])
-
-
-def _ridge(samples: Samples, pieces: Windows, delay: float) -> tuple[float, Numbers]:
-    """Return the prior's weight that tells held-out windows best, and how well, by axis."""
-    count = pieces.v.shape[1]
-    fold = np.arange(count) * min(_FOLDS, count) // count
-    best: tuple[float, float, Numbers] | None = None
+    best, most = _RIDGES[0], -np.inf
     for ridge in _RIDGES:
-        start = regressed(samples, delay, ridge)
-        ways = np.empty_like(pieces.v)
-        for held in range(int(fold.max()) + 1):
-            away = np.flatnonzero(fold == held)
-            found = refined(pieces.only(np.flatnonzero(fold != held)), start, ridge)
-            ways[:, away] = flown(pieces.only(away), found)
-        scores = r_squared(pieces.v[1:], ways[1:])
-        if best is None or scores.mean() > best[1] + 1e-4:
-            best = (ridge, float(scores.mean()), scores)
-    assert best is not None
-    return best[0], best[2]
+        if (score := told_with(ridge)) > most + _BETTER:
+            best, most = ridge, score
+    return best
 
 
-def _confidence(pieces: Windows, parameters: Numbers, ridge: float) -> tuple[Numbers, Numbers]:
-    """Return the 95 % interval of each parameter: windows drawn anew, one Gauss-Newton step each."""
-    normal = normal_of(pieces, parameters)
-    count = len(normal.left)
+def _crossed(pieces: Windows, fitted: Callable[[npt.NDArray[np.intp]], Parameters]) -> Numbers:
+    """Return R² by axis of windows told by what was fitted to the others; folds are blocks of time."""
+    count = pieces.number
+    fold = np.arange(count) * min(_FOLDS, count) // count
+    ways = np.empty_like(pieces.v[pieces.lead :])
+    for held_out in range(int(fold.max()) + 1):
+        away = np.flatnonzero(fold == held_out)
+        ways[:, away] = _told(pieces.only(away), fitted(np.flatnonzero(fold != held_out)))
+    return r_squared(pieces.v[pieces.lead :], ways)
+
+
+def _told(pieces: Windows, found: Parameters) -> Numbers:
+    """Return the free ways through windows, (n, w, 4), each from its own first velocity."""
+    start, push = starts_of(pieces, found.delays), found.push[pieces.flight]
+    way = flown(pieces.asked(found.delays), start, found.chi, push)
+    return told(way, pieces.yaw, found.delays, pieces.dt)[pieces.lead :]
+
+
+def _confidence(
+    pieces: Windows, normal: Normal, found: Parameters, ridge: float, tell: Tell
+) -> tuple[Numbers, Numbers]:
+    """Return the 95 % interval of χ and the delays: windows drawn anew, one Gauss-Newton step each."""
+    count, now = pieces.number, found.flat()
     random = np.random.default_rng(0)
-    drawn: list[Numbers] = []
-    for _ in range(_RESAMPLES):
-        weights = np.bincount(random.integers(count, size=count), minlength=count)
+    drawn = np.empty((RESAMPLES, CHI + len(DELAYS)))
+    # Each flight's windows are drawn among themselves: none is left without one, its push would be unknown.
+    own = [np.flatnonzero(pieces.flight == number) for number in range(len(found.push))]
+    for k in range(RESAMPLES):
+        if k % 100 == 0:
+            tell(f"drawing the windows anew, {k} of {RESAMPLES}")
+        picked = np.concatenate([random.choice(mine, len(mine)) for mine in own])
+        weights = np.bincount(picked, minlength=count)
         squares = np.tensordot(weights, normal.squares, 1)
-        step = solved(squares, weights @ normal.slopes, ridge, parameters)
-        drawn.append(np.where(POSITIVE, np.maximum(parameters + step, LEAST), parameters + step))
-    low, high = np.percentile(np.array(drawn), _LEVEL, axis=0)
-    return low, high
+        drawn[k] = stepped(squares, weights @ normal.slopes, now, ridge)[: drawn.shape[1]]
+    lowest_drawn, highest_drawn = np.percentile(drawn, LEVEL, axis=0)
+    return lowest_drawn, highest_drawn
 
 
-def _condition(pieces: Windows, parameters: Numbers) -> float:
-    """Return the condition number of χ's normal equations, columns brought to the same length."""
-    squares = normal_of(pieces, parameters).squares.sum(axis=0)[:CHI, :CHI]
-    lengths = np.sqrt(np.maximum(np.diag(squares), 1e-30))
-    return float(np.linalg.cond(squares / np.outer(lengths, lengths)))
+def _condition(normal: Normal) -> float:
+    """Return the condition number of χ's normal equations once delays and pushes are fitted, on χ's own scale."""
+    squares = normal.squares.sum(axis=0)
+    across = squares[:CHI, CHI:]
+    own = squares[:CHI, :CHI] - across @ np.linalg.pinv(squares[CHI:, CHI:]) @ across.T
+    lengths = np.sqrt(np.maximum(np.diag(own), 1e-30))
+    return float(np.linalg.cond(own / np.outer(lengths, lengths)))

@@ -11,10 +11,11 @@ Identify the velocity response χ of a vehicle from flights: recordings (.rrd), 
 validate it on others. docs/identify.md explains the method, the columns and what the figures mean."""
 EXAMPLES = """\
 examples:
-  groundstation identify FLIGHT.rrd                                      the table, on itself
+  groundstation identify FLIGHT.rrd                                      χ, and how well it tells the flight
   groundstation identify a.ulg b.ulg --validate c.ulg                    on a flight it has not seen
-  groundstation identify FLIGHT.rrd --out my.toml --page my.html         a preset and a page with the figures
-  groundstation --sim --airframe my.toml --model dynamic                 fly what was found
+  groundstation identify FLIGHT.rrd --out my.toml --report my.html       an airframe, and a page with figures
+  groundstation identify FLIGHT.csv --compare matrice_100                beside what is known of it
+  groundstation --sim --model dynamic --airframe my.toml                 fly what was found
 
 exit codes: 0 done, 2 bad input
 """
@@ -48,5 +49,15 @@ def fill(parser: argparse.ArgumentParser) -> None:
         metavar="AIRFRAME",
         help="whose size, speeds and battery the airframe has (default: matrice_100)",
     )
-    parser.add_argument("--page", type=Path, metavar="FILE", help="write a page (.html) with figures")
+    parser.add_argument(
+        "--compare",
+        metavar="AIRFRAME",
+        help="another airframe's χ beside it, and how well it tells the flights",
+    )
+    parser.add_argument(
+        "--no-delay",
+        action="store_true",
+        help="take references to act at once: what is late goes into χ, as the simulator flies it",
+    )
+    parser.add_argument("--report", type=Path, metavar="FILE", help="write a page (.html) with figures")
     parser.add_argument("--json", action="store_true", help="the result as one JSON object")

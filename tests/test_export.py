@@ -7,6 +7,7 @@ import io
 import json
 import subprocess
 import sys
+import tomllib
 from pathlib import Path
 
 import numpy as np
@@ -18,7 +19,6 @@ from pymavlink.dialects.v20 import common
 from test_report_flight import recorded
 
 from groundstation import cli
-from groundstation.export.columns import Columns, wide
 from groundstation.recording import schema
 from groundstation.review.flight import Flight
 from groundstation.vehicle.tlog import TlogWriter
@@ -101,15 +101,6 @@ def test_one_wide_table_holds_values_as_last_known(tmp_path, flight_file, flight
     )
 
 
-def test_before_its_first_row_a_value_is_not_known():
-    early = Columns("/a", np.array([0.0, 1.0]), ["a"], ["m"], "", np.array([[1.0], [2.0]]))
-    late = Columns("/b/c", np.array([0.55]), ["x"], ["m"], "", np.array([[3.0]]))
-    table = wide([early, late], 2.0)
-    assert list(table.names) == ["a.a", "b.c.x"]
-    assert table.t == pytest.approx([0.0, 0.5, 1.0])
-    assert np.array_equal(table.values, [[1.0, np.nan], [1.0, np.nan], [2.0, 3.0]], equal_nan=True)
-
-
 def test_mcap_holds_the_same_numbers_in_the_order_of_time(tmp_path, flight_file, flight, capsys):
     out = tmp_path / "flight.mcap"
     assert run(capsys, flight_file, "--to", "mcap", "--out", out)[0] == 0
@@ -134,7 +125,7 @@ def test_mcap_holds_the_same_numbers_in_the_order_of_time(tmp_path, flight_file,
     assert pose["translation"]["z"] == flight.series(schema.POSITION).values[-1, 2]
     assert sum(value**2 for value in pose["rotation"].values()) == pytest.approx(1.0)
     assert attached["flight.tlog"] == flight_file.with_suffix(".tlog").read_bytes()
-    assert "obstacle" in json.loads(attached["mission.json"])
+    assert "obstacle" in tomllib.loads(attached["mission.toml"].decode())
     assert metadata["flight"]["mission"] == "paper"
 
 

@@ -1,86 +1,123 @@
-"""`groundstation export`: a recording in another program's format."""
+"""`groundstation export`: checks what is asked for, reads the recording, writes it, says what is where."""
 
 from __future__ import annotations
 
 import argparse
-import shutil
+import math
 import sys
-from collections.abc import Iterator
 from pathlib import Path
+from typing import TextIO
 
 from groundstation.errors import InputError
-from groundstation.export.columns import Span
+from groundstation.export import folder
+from groundstation.export.output import check, written
+from groundstation.export.selection import Asked, Selection
 from groundstation.review.choosing import chosen
 from groundstation.review.flight import Flight
 
 
 def run(asked: argparse.Namespace) -> int:
-    """Write what was asked for and return the exit code.
+    """Export a flight and return the exit code.
 
     Raises:
-        InputError: The recording cannot be read, nothing of it was chosen, or the output cannot be written.
+        InputError: The recording cannot be read, nothing is left of it, or there is nowhere to write.
     """
-    _check(asked)
+    what = _asked(asked)
     path = chosen(asked.flight, asked.logs)
-    out = asked.out or path.with_suffix("" if _is_folder(asked) else f".{asked.to}")
-    out = out.with_name(f"{out.name}_{asked.to}") if asked.out is None and _is_folder(asked) else out
-    if out.exists() and not asked.force:
-        raise InputError(f"{out}: is there already; choose another --out, or --force replaces it.")
-    flight = Flight(path)
-    span = Span(asked.only, asked.start, asked.end)
-    if not any(span.chooses(entity) for entity in flight.entities):
-        raise InputError(f"{path}: has no entity like {' '.join(asked.only)}; docs/logs.md lists them.")
-    # Written under another name until it is whole: what was there stays, and nothing half is taken for whole.
-    new = out.with_name(f".{out.name}.new")
+    outs = _outs(asked, path)
+    in_folder = asked.to != "mcap" and asked.hz is None
+    for out in outs:
+        check(out, folder=in_folder, force=asked.force)
+    progress = Progress(sys.stderr)
     try:
-        _remove(new)
-        for words in _written(asked, flight, span, new):
-            _progress(f"writing {words}")
-        _remove(out)
-        new.replace(out)
-    except OSError as error:
-        raise InputError(f"{out}: cannot be written ({error.strerror}); choose another --out.") from error
+        progress.step(f"reading {path}")
+        selection = Selection(Flight(path), what)
+        if selection.unknown:
+            progress.tell(f"Left out, not known to this program: {', '.join(selection.unknown)}.")
+        for out in outs:
+            with written(out, folder=in_folder, force=asked.force) as draft:
+                _write(selection, asked, draft, out, progress)
     finally:
-        _progress("")
-        _remove(new)
-    print(out)
+        progress.close()
+    for out in outs:
+        print(f"{out} ({_size(out) / 1e6:.1f} MB)")
     return 0
 
 
-def _check(asked: argparse.Namespace) -> None:
-    if asked.hz is not None and not 0.0 < asked.hz <= 10_000.0:
-        raise InputError(f"--hz {asked.hz:g}: is not a rate; give one above 0, up to 10000.")
+def _asked(asked: argparse.Namespace) -> Asked:
+    start = -math.inf if asked.start is None else asked.start
+    end = math.inf if asked.end is None else asked.end
+    if not start <= end:
+        raise InputError(
+            f"--start {start:g}: is after --end {end:g}; both are seconds since the run's start."
+        )
+    if asked.hz is not None and not 0.0 < asked.hz < math.inf:
+        raise InputError(f"--hz {asked.hz:g}: is not a rate; give rows a second, above 0.")
     if asked.hz is not None and asked.to == "mcap":
-        raise InputError("--hz makes one wide table, which MCAP has not; leave it out.")
-    if asked.start > asked.end:
-        raise InputError(f"--start {asked.start:g} is after --end {asked.end:g}.")
+        raise InputError(
+            "--hz makes one wide table, and an MCAP file holds none; leave it out, or use --to csv."
+        )
+    return Asked(tuple(asked.entities or ()), start, end)
 
 
-def _is_folder(asked: argparse.Namespace) -> bool:
-    return asked.to != "mcap" and asked.hz is None
+def _outs(asked: argparse.Namespace, recording: Path) -> list[Path]:
+    """Return what to write: a folder, an MCAP file, or a wide table and what its columns mean."""
+    if asked.to == "mcap" or asked.hz is not None:
+        out = asked.out or recording.with_suffix(f".{asked.to}")
+        return [out] if asked.to != "csv" else [out, out.with_suffix(f".{folder.COLUMNS}.csv")]
+    return [asked.out or recording.with_name(f"{recording.stem}_{asked.to}")]
 
 
-def _written(asked: argparse.Namespace, flight: Flight, span: Span, out: Path) -> Iterator[str]:
+def _write(
+    selection: Selection, asked: argparse.Namespace, draft: Path, out: Path, progress: Progress
+) -> None:
+    """Write one of the outputs."""
     if asked.to == "mcap":
         from groundstation.export.mcap_file import write_mcap
 
-        return write_mcap(flight, span, out)
-    from groundstation.export.tables import write_folder, write_wide
-
-    if asked.hz is None:
-        return write_folder(flight, span, out, asked.to)
-    return write_wide(flight, span, out, asked.hz, asked.to)
-
-
-def _remove(path: Path) -> None:
-    if path.is_dir():
-        shutil.rmtree(path)
+        progress.tell(f"writing {out}")
+        write_mcap(selection, draft, progress.step)
+    elif asked.hz is None:
+        progress.tell(f"writing {out}")
+        folder.write_folder(selection, draft, asked.to, progress.step)
+    elif out.name.endswith(f".{folder.COLUMNS}.csv"):
+        folder.save(folder.described(selection, in_one=True), draft, "csv")
     else:
-        path.unlink(missing_ok=True)
+        progress.tell(f"writing {out}")
+        folder.write_wide(selection, draft, asked.hz, asked.to)
 
 
-def _progress(words: str) -> None:
-    """Say what is being done, on a terminal in one line that changes."""
-    if sys.stderr.isatty():
-        sys.stderr.write(f"\r\x1b[K{words}")
-        sys.stderr.flush()
+def _size(out: Path) -> int:
+    files = [out] if out.is_file() else out.iterdir()
+    return sum(file.stat().st_size for file in files)
+
+
+class Progress:
+    """Tells how it is going: on a terminal one line that changes, else a line for what is begun.
+
+    Args:
+        out: Where to.
+    """
+
+    def __init__(self, out: TextIO) -> None:
+        self._out = out
+        self._live = out.isatty()
+        self._begun = ""
+
+    def tell(self, words: str) -> None:
+        """Tell what is begun."""
+        self._begun = f"{words}: "
+        self._out.write(f"\r\x1b[K{words}" if self._live else f"{words}\n")
+        self._out.flush()
+
+    def step(self, words: str) -> None:
+        """Tell how far it is."""
+        if self._live:
+            self._out.write(f"\r\x1b[K{self._begun}{words}")
+            self._out.flush()
+
+    def close(self) -> None:
+        """End the changing line."""
+        if self._live:
+            self._out.write("\r\x1b[K")
+            self._out.flush()

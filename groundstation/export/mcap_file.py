@@ -1,195 +1,220 @@
-"""MCAP: a channel a quantity as JSON with its schema, and what Foxglove shows without further ado.
+"""A selection as an MCAP file: a channel an entity, JSON messages, and what Foxglove shows by itself beside them.
 
-Format: https://mcap.dev/spec; Foxglove's schemas: https://docs.foxglove.dev/docs/visualization/message-schemas.
+Messages lie in the order of their times, a window after the other, so that a reader that plays them reads the file
+once. A part that is not known (NaN) is left out of its message; an infinite one is 1e999, which readers of JSON take
+for infinity. Every other number comes back to the last bit.
 """
 
 from __future__ import annotations
 
-import heapq
-import json
-import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping
+from itertools import pairwise
+from math import isnan
+from operator import itemgetter
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
+import msgspec
 import numpy as np
+import tomli_w
 from mcap.writer import CompressionType, Writer
 
 from groundstation import __version__
-from groundstation.export.columns import Columns, Span, columns_of
-from groundstation.export.tables import properties_of, started_of, wall_ns
+from groundstation.export import foxglove
+from groundstation.export.selection import Selection, Table, nanoseconds, unit_of
 from groundstation.recording import schema
 from groundstation.recording.motion import quaternions
-from groundstation.review.flight import Flight
-from sim.environment.shapes import primitives
-from sim.scenario import Box, Cylinder
+from groundstation.review.flight import Numbers
 
-# Foxglove's level numbers by ours.
-_LEVELS = {"INFO": 2, "WARN": 3, "ERROR": 4}
-_SOLID = {"r": 0.62, "g": 0.53, "b": 0.46, "a": 0.8}
-_WORLD, _VEHICLE = "world", "vehicle"
-_TELL_EVERY = 20_000
-# Time, order among equals, channel, content.
-Message = tuple[int, int, int, bytes]
+Tell = Callable[[str], None]
+# When, ns; and the message.
+Message = tuple[int, bytes]
+
+_WINDOW_S = 1.0
+# What is compressed at a time, bytes.
+_CHUNK_BYTES = 4 << 20
+_INFINITY = {np.inf: msgspec.Raw(b"1e999"), -np.inf: msgspec.Raw(b"-1e999")}
+_encode = msgspec.json.Encoder().encode
 
 
-def write_mcap(flight: Flight, span: Span, out: Path) -> Iterator[str]:
-    """Write a flight as an MCAP file, in the order of time, yielding how far it is.
+class Channel(NamedTuple):
+    """One channel.
 
-    Args:
-        flight: The flight.
-        span: What of it.
-        out: The file.
+    Attributes:
+        topic: Its name.
+        kind: Of its messages, the schema's name.
+        schema: Of its messages.
+        t: (n,), when they are, s, ascending.
+        messages: Makes those of rows from one to another.
     """
-    with out.open("wb") as file:
-        writer = Writer(file, compression=CompressionType.ZSTD)
-        writer.start(profile="", library=f"groundstation {__version__}")
-        _Attached(writer, flight).write()
-        streams = [*_numbers(writer, flight, span), *_shown(writer, flight, span)]
-        for number, (at, _, channel, content) in enumerate(heapq.merge(*streams)):
-            writer.add_message(channel, at, content, at, number)
-            if number % _TELL_EVERY == 0:
-                yield f"{number} messages"
+
+    topic: str
+    kind: str
+    schema: Mapping[str, Any]
+    t: Numbers
+    messages: Callable[[int, int], Iterator[Message]]
+
+
+def write_mcap(selection: Selection, path: Path, tell: Tell) -> None:
+    """Write a selection."""
+    with path.open("wb") as file:
+        writer = Writer(file, chunk_size=_CHUNK_BYTES, compression=CompressionType.ZSTD)
+        writer.start(library=f"groundstation {__version__}")
+        channels = list(_channels(selection))
+        numbers = [_registered(writer, channel) for channel in channels]
+        _attach(writer, selection)
+        first, last = selection.span
+        edges = [first, *np.arange(first + _WINDOW_S, last, _WINDOW_S).tolist(), np.inf]
+        for begin, end in pairwise(edges):
+            tell(f"{begin - first:.0f} of {last - first:.0f} s")
+            for ns, number, message in _merged(channels, numbers, begin, end):
+                writer.add_message(number, ns, message, ns)
         writer.finish()
 
 
-class _Attached:
-    """What goes into the file beside the messages: properties, mission, settings, the MAVLink log."""
-
-    def __init__(self, writer: Writer, flight: Flight) -> None:
-        self._writer, self._flight = writer, flight
-        self._at = int(wall_ns(np.zeros(1), started_of(flight))[0])
-
-    def write(self) -> None:
-        """Write them."""
-        known = properties_of(self._flight)
-        for name, facts in known.items():
-            self._writer.add_metadata(name, {key: str(value) for key, value in facts.items()})
-        for name in ("mission", "settings"):
-            if words := known["flight"].get(f"{name}_json"):
-                self._attach(f"{name}.json", "application/json", str(words).encode())
-        tlog = self._flight.path.with_suffix(".tlog")
-        if tlog.is_file():
-            self._attach(tlog.name, "application/vnd.mavlink.tlog", tlog.read_bytes())
-
-    def _attach(self, name: str, kind: str, content: bytes) -> None:
-        self._writer.add_attachment(self._at, self._at, name, kind, content)
+def _registered(writer: Writer, channel: Channel) -> int:
+    schema_id = writer.register_schema(channel.kind, "jsonschema", _encode(channel.schema))
+    return writer.register_channel(channel.topic, "json", schema_id)
 
 
-def _channel(writer: Writer, topic: str, name: str, described: dict[str, Any]) -> int:
-    known = writer.register_schema(name, "jsonschema", json.dumps(described).encode())
-    return writer.register_channel(topic, "json", known)
+def _merged(
+    channels: list[Channel], numbers: list[int], begin: float, end: float
+) -> list[tuple[int, int, bytes]]:
+    """Return the messages of a window, each with its time, ns, and its channel's number, in order."""
+    found: list[tuple[int, int, bytes]] = []
+    for channel, number in zip(channels, numbers, strict=True):
+        first, last = np.searchsorted(channel.t, (begin, end))
+        found += [(ns, number, message) for ns, message in channel.messages(int(first), int(last))]
+    return sorted(found, key=itemgetter(0))
 
 
-def _numbers(writer: Writer, flight: Flight, span: Span) -> Iterator[Iterator[Message]]:
-    """Yield a stream of messages a quantity."""
-    started = started_of(flight)
-    for columns in columns_of(flight, span):
-        parts = {
-            name: {"type": ["number", "null"], "description": unit}
-            for name, unit in zip(columns.names, columns.units, strict=True)
-        }
-        described = {"type": "object", "description": columns.meaning, "properties": parts}
-        channel = _channel(writer, columns.path, f"groundstation{columns.path.replace('/', '.')}", described)
-        yield _rows(columns, channel, wall_ns(columns.t, started))
+def _channels(selection: Selection) -> Iterator[Channel]:
+    for table in selection.tables:
+        yield _numbers(selection, table)
+    for path, meaning, changes in selection.states:
+        told = {"type": "object", "description": meaning, "properties": {"state": {"type": "string"}}}
+        rows = [{"state": word} for _, word in changes]
+        yield _made(selection, path, told, np.array([t for t, _ in changes]), lambda _, i, rows=rows: rows[i])
+    yield from _shown(selection)
 
 
-def _rows(columns: Columns, channel: int, at: np.ndarray) -> Iterator[Message]:
-    names = list(columns.names)
-    for number, (when, row) in enumerate(zip(at.tolist(), columns.values.tolist(), strict=True)):
-        # JSON knows no NaN.
-        known = {
-            name: value if math.isfinite(value) else None for name, value in zip(names, row, strict=True)
-        }
-        yield when, number, channel, json.dumps(known).encode()
+def _numbers(selection: Selection, table: Table) -> Channel:
+    """Return the channel of a quantity."""
+    quantity, values = table.quantity, table.values
+    stamps = nanoseconds(table.t) + selection.started_ns
+    finite = bool(np.isfinite(values).all())
 
+    def messages(first: int, last: int) -> Iterator[Message]:
+        rows = zip(stamps[first:last].tolist(), values[first:last].tolist(), strict=True)
+        for ns, row in rows:
+            known = dict(zip(quantity.parts, row, strict=True))
+            yield ns, _encode(known if finite else _sayable(known))
 
-def _shown(writer: Writer, flight: Flight, span: Span) -> Iterator[Iterator[Message]]:
-    """Yield what Foxglove shows by itself: the vehicle in the world, obstacles, events."""
-    anything: dict[str, Any] = {"type": "object"}
-    yield _poses(flight, span, _channel(writer, "/tf", "foxglove.FrameTransform", anything))
-    yield _logged(flight, span, _channel(writer, "/log", "foxglove.Log", anything))
-    yield _scene(flight, _channel(writer, "/scene", "foxglove.SceneUpdate", anything))
-
-
-def _poses(flight: Flight, span: Span, channel: int) -> Iterator[Message]:
-    t, values = flight.series(schema.POSITION)
-    attitude_t, attitude = flight.series(schema.ATTITUDE)
-    chosen = np.isfinite(values.sum(axis=1)) & (t >= span.start) & (t <= span.end)
-    t, values = t[chosen], values[chosen]
-    if not len(t) or not len(attitude_t):
-        return
-    places = np.maximum(np.searchsorted(attitude_t, t, side="right") - 1, 0)
-    turns = quaternions(attitude[places, 0], attitude[places, 1], values[:, 3])
-    at = wall_ns(t, started_of(flight)).tolist()
-    for number, (when, place, turn) in enumerate(zip(at, values.tolist(), turns.tolist(), strict=True)):
-        content = {
-            "timestamp": _stamp(when),
-            "parent_frame_id": _WORLD,
-            "child_frame_id": _VEHICLE,
-            "translation": dict(zip("xyz", place[:3], strict=True)),
-            "rotation": dict(zip("xyzw", turn, strict=True)),
-        }
-        yield when, number, channel, json.dumps(content).encode()
-
-
-def _logged(flight: Flight, span: Span, channel: int) -> Iterator[Message]:
-    lines = [line for line in flight.events() if span.start <= line.t <= span.end]
-    at = wall_ns(np.array([line.t for line in lines]), started_of(flight)).tolist()
-    for number, (when, line) in enumerate(zip(at, lines, strict=True)):
-        content = {
-            "timestamp": _stamp(when),
-            "level": _LEVELS.get(line.level, 1),
-            "message": line.text,
-            "name": line.source,
-        }
-        yield when, number, channel, json.dumps(content).encode()
-
-
-def _scene(flight: Flight, channel: int) -> Iterator[Message]:
-    """Yield the mission's obstacles, once, as what they are made of."""
-    mission = flight.mission
-    if mission is None or not mission.obstacle:
-        return
-    when = int(wall_ns(np.zeros(1), started_of(flight))[0])
-    cubes: list[dict[str, Any]] = []
-    cylinders: list[dict[str, Any]] = []
-    spheres: list[dict[str, Any]] = []
-    for obstacle in mission.obstacle:
-        for part in primitives(obstacle):
-            pose = {"position": dict(zip("xyz", part.center, strict=True)), "orientation": _upright(part)}
-            if isinstance(part, Box):
-                cubes.append(
-                    {"pose": pose, "size": dict(zip("xyz", part.size, strict=True)), "color": _SOLID}
-                )
-            elif isinstance(part, Cylinder):
-                size = {"x": 2.0 * part.radius, "y": 2.0 * part.radius, "z": part.height}
-                cylinders.append(
-                    {"pose": pose, "size": size, "bottom_scale": 1.0, "top_scale": 1.0, "color": _SOLID}
-                )
-            else:
-                size = dict.fromkeys("xyz", 2.0 * part.radius)
-                spheres.append({"pose": pose, "size": size, "color": _SOLID})
-    entity = {
-        "timestamp": _stamp(when),
-        "frame_id": _WORLD,
-        "id": "obstacles",
-        "lifetime": {"sec": 0, "nsec": 0},
-        "frame_locked": False,
-        "metadata": [],
-        **{name: [] for name in ("arrows", "lines", "triangles", "texts", "models")},
-        "cubes": cubes,
-        "cylinders": cylinders,
-        "spheres": spheres,
+    properties = {
+        part: {"type": "number", "description": f"{unit_of(quantity, place)}; left out: not known"}
+        for place, part in enumerate(quantity.parts)
     }
-    yield when, 0, channel, json.dumps({"deletions": [], "entities": [entity]}).encode()
+    told = {
+        "type": "object",
+        "description": f"{quantity.meaning} ({quantity.rate})",
+        "properties": properties,
+    }
+    return Channel(quantity.path, quantity.path, told, table.t, messages)
 
 
-def _upright(part: object) -> dict[str, float]:
-    """Return the quaternion of a part that stands upright, turned by its yaw."""
-    half = math.radians(getattr(part, "yaw_deg", 0.0)) / 2.0
-    return {"x": 0.0, "y": 0.0, "z": math.sin(half), "w": math.cos(half)}
+def _sayable(row: dict[str, float]) -> dict[str, Any]:
+    return {part: _INFINITY.get(value, value) for part, value in row.items() if not isnan(value)}
 
 
-def _stamp(at: int) -> dict[str, int]:
-    return {"sec": at // 1_000_000_000, "nsec": at % 1_000_000_000}
+def _shown(selection: Selection) -> Iterator[Channel]:
+    """Yield what Foxglove shows by itself, of what is selected."""
+    tables = {table.quantity.path: table for table in selection.tables}
+    place = tables.get(schema.POSITION.path)
+    lean = tables.get(schema.ATTITUDE.path)
+    if place and lean and len(place.t) == len(lean.t):
+        p, (roll, pitch) = place.values, lean.values.T
+        turned = quaternions(roll, pitch, p[:, 3])
+        yield _made(
+            selection, "/tf", "foxglove.FrameTransform", place.t,
+            lambda ns, i: foxglove.transform(ns, p[i, :3].tolist(), turned[i].tolist()),
+        )  # fmt: skip
+    for topic, path in (("/vehicle/pose", schema.POSITION.path), ("/pilot/p_h_pose", schema.P_H.path)):
+        if path in tables:
+            yield _poses(selection, topic, tables[path])
+    if selection.events:
+        lines = selection.events
+        yield _made(
+            selection, "/log", "foxglove.Log", np.array([line.t for line in lines]),
+            lambda ns, i: foxglove.log(ns, lines[i].level, lines[i].source, lines[i].text),
+        )  # fmt: skip
+    mission = selection.flight.mission
+    yield _made(
+        selection, "/scene", "foxglove.SceneUpdate", np.array([selection.span[0]]),
+        lambda ns, _: foxglove.scene(ns, mission),
+    )  # fmt: skip
+
+
+def _poses(selection: Selection, topic: str, table: Table) -> Channel:
+    known = np.isfinite(table.values).all(axis=1)
+    t, rows = table.t[known], table.values[known]
+
+    def of(ns: int, i: int) -> foxglove.Json:
+        x, y, z, yaw = rows[i].tolist()
+        return foxglove.pose(ns, (x, y, z), yaw)
+
+    return _made(selection, topic, "foxglove.PoseInFrame", t, of)
+
+
+def _made(
+    selection: Selection,
+    topic: str,
+    kind: str | Mapping[str, Any],
+    t: Numbers,
+    of: Callable[[int, int], foxglove.Json],
+) -> Channel:
+    """Return a channel whose messages are made one by one, from their time, ns, and their place.
+
+    Args:
+        selection: Where its times count from.
+        topic: Its name.
+        kind: One of Foxglove's schemas by name, or a schema of the topic's own.
+        t: (n,), s.
+        of: Makes one.
+    """
+    stamps = (nanoseconds(t) + selection.started_ns).tolist()
+
+    def messages(first: int, last: int) -> Iterator[Message]:
+        return ((stamps[i], _encode(of(stamps[i], i))) for i in range(first, last))
+
+    if isinstance(kind, str):
+        return Channel(topic, kind, foxglove.SCHEMAS[kind], t, messages)
+    return Channel(topic, topic, kind, t, messages)
+
+
+def _attach(writer: Writer, selection: Selection) -> None:
+    """Put properties, mission, settings and the MAVLink log into the file."""
+    for name, facts in (("flight", selection.properties), ("device", selection.device)):
+        if facts:
+            writer.add_metadata(name, {key: str(value) for key, value in facts.items()})
+    described = selection.described()
+    for name in ("mission", "settings"):
+        if described[name] is not None:
+            content = tomli_w.dumps(_without_none(described[name])).encode()
+            _attached(writer, selection, f"{name}.toml", "application/toml", content)
+    tlog = selection.flight.path.with_suffix(".tlog")
+    if tlog.is_file():
+        _attached(writer, selection, tlog.name, "application/octet-stream", tlog.read_bytes())
+
+
+def _attached(writer: Writer, selection: Selection, name: str, media: str, content: bytes) -> None:
+    at = selection.started_ns
+    writer.add_attachment(create_time=at, log_time=at, name=name, media_type=media, data=content)
+
+
+def _without_none(table: dict[str, Any]) -> dict[str, Any]:
+    """TOML has no null: what is None is what is left out."""
+    return {
+        key: _without_none(value) if isinstance(value, dict) else value
+        for key, value in table.items()
+        if value is not None
+    }

@@ -7,20 +7,18 @@ from pathlib import Path
 
 HELP = "a recording as Parquet, CSV or MCAP"
 DESCRIPTION = """\
-Write a recorded flight in another program's format: tables at every quantity's own rate, or one wide table, or an
-MCAP file that Foxglove shows. Numbers are exactly those of the recording."""
+Write a recording for other programs: a folder of Parquet or CSV tables, one a quantity at its own rate; one wide
+table at a rate of your choice (--hz); or an MCAP file that Foxglove opens. docs/export.md says what is in them."""
 EXAMPLES = """\
 examples:
-  groundstation export --to parquet                            the newest flight: a folder with a table a quantity
-  groundstation export FLIGHT.rrd --to csv --hz 50             one table at 50 Hz
-  groundstation export 2 --to mcap --out flight.mcap           the second newest, for Foxglove
-  groundstation export FLIGHT.rrd --to csv --only '/pilot/*'   some of it
+  groundstation export --to parquet                                the newest flight, a folder beside the recording
+  groundstation export 3 --to mcap                                 the third newest, for Foxglove
+  groundstation export FLIGHT.rrd --to csv --hz 50                 one table, 50 rows a second
+  groundstation export FLIGHT.rrd --to csv --entities '/handle/*' --start 5 --end 15
 
-The .tlog beside a recording is MAVLink's own format: MAVProxy, QGroundControl and mavlogdump.py open it as it is.
-exit codes: 0 done, 2 bad input, 130 stopped
+exit codes: 0 done, 2 bad input or nowhere to write, 130 stopped
 """
 RUN = "groundstation.export.command:run"
-FORMATS = ("parquet", "csv", "mcap")
 
 
 def fill(parser: argparse.ArgumentParser) -> None:
@@ -32,21 +30,22 @@ def fill(parser: argparse.ArgumentParser) -> None:
         metavar="FLIGHT",
         help="a recording, or its number in 'review --list' (default: the newest)",
     )
-    parser.add_argument("--to", choices=FORMATS, required=True, help="which format")
+    parser.add_argument("--to", required=True, choices=("parquet", "csv", "mcap"), help="as what")
     parser.add_argument(
-        "--out", type=Path, metavar="PATH", help="file or folder (default: beside the recording)"
+        "--out", type=Path, metavar="PATH", help="the folder or file to write (default: beside the recording)"
     )
-    parser.add_argument(
+    parser.add_argument("--force", action="store_true", help="replace what an export wrote there before")
+    what = parser.add_argument_group("what of it")
+    what.add_argument(
+        "--entities",
         "--only",
         nargs="+",
-        default=["*"],
-        metavar="PATTERN",
-        help="entities, as in docs/logs.md; * and ? stand for any",
+        metavar="GLOB",
+        help="only these, as docs/logs.md lists them, such as '/handle/*' (default: all)",
     )
-    parser.add_argument(
-        "--hz", type=float, metavar="N", help="one wide table at this rate; values are held, not interpolated"
+    what.add_argument(
+        "--hz", type=float, metavar="N", help="one wide table, N rows a second, of what held then"
     )
-    parser.add_argument("--start", type=float, default=0.0, metavar="S", help="from this time on, s")
-    parser.add_argument("--end", type=float, default=float("inf"), metavar="S", help="up to this time, s")
-    parser.add_argument("--force", action="store_true", help="replace what is there")
+    what.add_argument("--start", type=float, metavar="S", help="from S seconds after the run's start")
+    what.add_argument("--end", type=float, metavar="S", help="up to S seconds after the run's start")
     parser.add_argument("--logs", type=Path, default=Path("logs"), metavar="DIR", help="where recordings are")

@@ -91,12 +91,12 @@ class Flight:
     def events(self) -> list[Line]:
         """Return all events, commands and answers, in the order of their times."""
         paths = [path for path in self._timed if path.startswith(f"{entities.EVENTS}/")]
-        lines = [
-            Line(t, words[_LEVEL], path.rpartition("/")[2], words[_TEXT])
-            for path in paths
-            for t, words in self._words(path, _TEXT, _LEVEL)
-        ]
-        return sorted(lines)
+        return sorted(line for path in paths for line in self.texts(path))
+
+    def texts(self, path: str) -> list[Line]:
+        """Return the lines of one entity of words; the last part of its path tells them."""
+        source = path.rpartition("/")[2]
+        return [Line(t, words[_LEVEL], source, words[_TEXT]) for t, words in self._words(path, _TEXT, _LEVEL)]
 
     def properties(self, name: str = schema.FLIGHT) -> dict[str, Any]:
         """Return the recorder's properties of the flight, or those of the device."""

@@ -1,8 +1,10 @@
 """Loss counting, the MAVLink log, and the pump with the real MAVSDK on one side and a socket on the other."""
 
 import math
+import os
 import socket
 import struct
+import threading
 import time
 
 import pytest
@@ -103,6 +105,30 @@ def test_a_full_disk_is_told_once_and_stops_nothing():
     writer.close()
     assert len(told) == 1
     assert "free the disk" in told[0]
+
+
+def test_frames_that_a_slow_disk_does_not_take_are_told_once(tmp_path, monkeypatch):
+    monkeypatch.setattr("groundstation.vehicle.tlog._QUEUE_FRAMES", 10)
+    out, into = os.pipe()
+    told = []
+
+    class Slow(type(tmp_path)):
+        """A file that takes no more than a pipe holds until somebody reads."""
+
+        def open(self, _mode, **options):
+            return os.fdopen(into, "wb", **options)
+
+    monkeypatch.setattr(os, "fsync", lambda _: None)
+    writer = TlogWriter(Slow(tmp_path / "flight.tlog"), told.append)
+    for _ in range(100):
+        writer.write(bytes(60_000))
+    reader = threading.Thread(target=lambda: [None for _ in iter(lambda: os.read(out, 1 << 20), b"")])
+    reader.start()
+    writer.close()
+    reader.join()
+    os.close(out)
+    assert len(told) == 1
+    assert "misses frames" in told[0]
 
 
 def test_mavsdk_is_heard_through_the_pump():

@@ -20,11 +20,11 @@ _QUEUE_FRAMES = 50_000
 
 
 class TlogWriter:
-    """Writes a `.tlog`. Once it is open it never raises: a failing disk is told once, the rest is dropped.
+    """Writes a `.tlog`. Once it is open it never raises: a disk that fails, or is too slow, is told once.
 
     Args:
         path: The file; it must not exist.
-        on_failure: Told once, in words, when the disk fails.
+        on_failure: Told in words when the disk fails or frames are lost to it.
 
     Raises:
         OSError: The file cannot be created.
@@ -34,6 +34,7 @@ class TlogWriter:
         self._path = path
         self._on_failure = on_failure
         self._frames: queue.Queue[tuple[int, bytes] | None] = queue.Queue(_QUEUE_FRAMES)
+        self._lossy = False
         self._file = path.open("xb", buffering=0)
         self._thread = threading.Thread(target=self._write_all, name="tlog", daemon=True)
         self._thread.start()
@@ -43,7 +44,9 @@ class TlogWriter:
         try:
             self._frames.put_nowait((time.time_ns() // 1000, frame))
         except queue.Full:
-            return
+            if not self._lossy:
+                self._lossy = True
+                self._on_failure(f"MAVLink log {self._path} misses frames: the disk does not keep up.")
 
     def close(self) -> None:
         """Write what is left and close the file."""

@@ -86,6 +86,7 @@ class Control(Struct, frozen=True, forbid_unknown_fields=True):
         damping: Force against the handle's velocity, N·s/m; no more of it is used than the device renders passively.
         passivity: What keeps the hand from being given more energy than it gave: time-domain *observer*, *wave*
             variables, a two-layer energy *tank*, or *off*, only to see what happens without.
+        compensation: The presets that compensate the vehicle's response may; off, none does.
         k3, k4: Diagonals of the dynamic compensation: pull of a small velocity error, 1/s, and its most, m/s².
         airframe: Preset or file whose χ is compensated on a vehicle that is not simulated; "" for none.
     """
@@ -96,6 +97,7 @@ class Control(Struct, frozen=True, forbid_unknown_fields=True):
     stiffness: Gains3 = (4.0, 4.0, 4.0)
     damping: Annotated[float, Meta(ge=0, le=50)] = 0.4
     passivity: Literal["observer", "wave", "tank", "off"] = "observer"
+    compensation: bool = True
     k3: Gains4 = (2.5, 2.5, 2.5, 2.5)
     k4: Gains4 = (2.0, 2.0, 2.0, 2.0)
     airframe: str = ""

@@ -1,193 +1,277 @@
-"""`groundstation excite`: a headless flight whose hand excites the vehicle for identification."""
+"""`groundstation excite`: flies sines through the handle, so that `groundstation identify` can learn the response.
+
+Nothing new commands the vehicle: the scripted hand moves the handle, the pilot maps, guards, limits, the link sends.
+What is planned is told, and refused where there is no room for it, before anything is started.
+"""
 
 from __future__ import annotations
 
 import argparse
+import datetime
 import math
 import sys
 import time
+from pathlib import Path
+from typing import NamedTuple
 
 import msgspec
+import numpy as np
 
-from drivers.stick import StickSender
-from groundstation import fly
-from groundstation.bus import Bus
-from groundstation.config import Mapping, Settings
-from groundstation.console import Snapshot
+from groundstation.config import Settings
 from groundstation.errors import InputError
-from groundstation.excite_options import AXES
-from groundstation.frames import body_from_world
-from groundstation.headless import HandleMover, fly_steps
-from groundstation.identification.multisine import Excitation, excitation
-from groundstation.pilot.mapping import Displacement, RateMapping
-from groundstation.processes import Supervisor, running
+from groundstation.excite_hand import ExcitingHand
+from groundstation.fly import check_simulated, log_stem, plan, started
+from groundstation.headless import Outing
+from groundstation.identification import excitation
+from groundstation.identification.excitation import Excitation, Foreseen
+from groundstation.pilot.margin import USUAL_LAGS, Lags, lags_of
+from groundstation.pilot.shield.barrier import Barrier
+from groundstation.pilot.surroundings import Surroundings, surroundings_of
 from groundstation.run import Run
-from groundstation.run_folder import sweep_dead_runs
-from groundstation.training.director import Director
 from groundstation.training.mission import Criteria, Fence, Mission
+from sim.environment.world import World
 
-# What the excitation may take of the room: the rest is for the wind and for a vehicle that overshoots.
-_ROOM_SHARE = 0.6
-# Nothing is asked of the vehicle that takes it so near to the ground, m.
-_FLOOR_M = 1.0
-_SHORTEST_S = 8.0
-_REST_S = 2.0
-# Beside the excitation: taking off, coupling, landing.
-_AROUND_S = 60.0
+NAME = "excite"
+# Where the simulated vehicle flies unless a mission is named.
+_CALM = "calm"
+AXES = ("forward", "left", "up", "yaw")
+# The position loop's crossover stays below the band: it keeps the vehicle at its place and hardly answers the sines.
+_K1 = 0.6
+# A hand that gives way to no force: the handle is where the plan has it, N/m.
+_STIFF = 20_000.0
+_DELAY_S = 0.15
+# Wind shifts the vehicle until the position loop holds against it: as fast as it may push, m/s.
+_PUSH = 0.2
+_SHIFT_M = math.atanh(_PUSH / _K1)
+# Where the response is not known: the usual one, half and twice as slow, and one that overdoes what is asked of it.
+_UNKNOWN = ((1.0, 0.3), (1.0, 0.65), (1.0, 1.3), (1.5, 1.0))
+_HIGHEST_M = 50.0
+# For taking off, engaging and landing, s.
+_AROUND_S = 120.0
+
+
+class Plan(NamedTuple):
+    """What will be flown.
+
+    Attributes:
+        excitation: What the hand does.
+        excursion: How far the vehicle comes from the start, m.
+        room: What the guard must leave free around the start for that, level, and up and down, m.
+        run: The run that flies it.
+    """
+
+    excitation: Excitation
+    excursion: float
+    room: tuple[float, float]
+    run: Run
 
 
 def run(asked: argparse.Namespace) -> int:
-    """Fly the excitation and return the exit code.
+    """Fly what was asked for and return the exit code.
 
     Raises:
-        InputError: Something asked for cannot be, or there is no room for it.
+        InputError: It cannot be flown, or there is no room for it.
     """
-    if asked.connect and not asked.confirm_real:
-        raise InputError(
-            "excite --connect flies a real vehicle by itself; add --confirm-real if you mean it."
-        )
-    if asked.sim and asked.confirm_real:
-        raise InputError("--confirm-real is for --connect; leave it out.")
-    planned = fly.plan(asked)
-    settings = _guarded(planned.settings)
-    signal = _signal(asked, settings)
-    mission = _mission(planned.mission, asked, signal)
-    planned = msgspec.structs.replace(planned, settings=settings, mission=mission)
-    _announce(signal, asked)
-    sweep_dead_runs()
-    fly.leave_when_told()
-    with running(planned, "headless", fly.sim_options(asked)) as (bus, supervisor):
-        return _fly(planned, bus, supervisor, signal)
+    _check(asked)
+    planned = planned_for(asked)
+    _tell(planned)
+    return _fly(planned, asked)
 
 
-def _guarded(settings: Settings) -> Settings:
-    """Return the settings with the preset that has a guard.
+def planned_for(asked: argparse.Namespace) -> Plan:
+    """Plan what was asked for.
 
     Raises:
-        InputError: The guard is off in the settings, or the hand does not fly by rate.
+        InputError: It cannot be flown, or there is no room for it.
+    """
+    if asked.sim and not asked.mission:
+        asked.mission = _CALM
+    base = plan(asked)
+    settings = settings_for(base.settings)
+    band = _band(asked.band)
+    found = excitation.plan(_axes(asked.axes), asked.amplitude, asked.seconds, band, settings)
+    known = surroundings_of(base)
+    lags = lags_of(known.chi) if known.chi else USUAL_LAGS
+    responses = [(lag.gain, lag.time) for lag in lags[:3]] if known.chi else _UNKNOWN
+    ahead = excitation.foreseen(found, responses, _K1, _DELAY_S)
+    excursion = _SHIFT_M + float(np.hypot(*ahead.distance.T).max())
+    room = _room(ahead, settings, lags)
+    fence = known.fence or Fence(settings.shield.fence, settings.shield.ceiling, settings.shield.floor)
+    altitude = _altitude(asked.altitude, room[1], fence)
+    _check_room(altitude, room, known, fence)
+    mission = msgspec.structs.replace(
+        base.mission or Mission(schema=1, name=NAME, title=""),
+        name=NAME,
+        title="An excitation for identification",
+        teaches="",
+        takeoff_altitude_m=altitude,
+        route=(),
+        target=None,
+        criteria=Criteria(time_limit_s=found.duration + _AROUND_S),
+        fence=_around(altitude, known.radius + room[0], room[1], fence),
+    )
+    log = log_stem(asked.logs, datetime.datetime.fromisoformat(base.started), NAME)
+    flown = msgspec.structs.replace(base, settings=settings, mission=mission, log=str(log))
+    return Plan(found, excursion, room, flown)
+
+
+def settings_for(settings: Settings) -> Settings:
+    """Return the settings that an excitation is flown with.
+
+    Raises:
+        InputError: The guard is off.
     """
     if settings.shield.guard == "off":
+        raise InputError('shield.guard: is "off"; an excitation flies by itself, so only with the guard on.')
+    replace = msgspec.structs.replace
+    forward, left, up, yaw = (min(_K1, gain) for gain in settings.control.k1)
+    control = replace(settings.control, preset="assisted", compensation=False, k1=(forward, left, up, yaw))
+    devices = {**settings.devices, "scripted": {"stiffness": _STIFF}}
+    return replace(settings, control=control, devices=devices)
+
+
+def _check(asked: argparse.Namespace) -> None:
+    """Refuse what means nothing, before anything is planned."""
+    if not asked.sim and not asked.connect:
+        raise InputError("excite flies a vehicle; say which, with --sim or --connect URL.")
+    if asked.connect and not asked.confirm_real:
+        raise InputError("--connect: flies a real vehicle by itself; add --confirm-real if you mean it.")
+    check_simulated(asked)
+    if not 0.05 <= asked.amplitude <= 1.0:
+        raise InputError(f"--amplitude {asked.amplitude:g}: is a share of the full speed; give 0.05 to 1.")
+    if not 5.0 <= asked.seconds <= 300.0:
+        raise InputError(f"--seconds {asked.seconds:g}: is the time of one stretch; give 5 to 300.")
+    if asked.altitude is not None and not 0.5 <= asked.altitude <= _HIGHEST_M:
         raise InputError(
-            "shield.guard is off in the settings; the excitation is flown with the guard on only."
+            f"--altitude {asked.altitude:g}: is not a place to fly at; give 0.5 to {_HIGHEST_M:g} m."
         )
-    return msgspec.structs.replace(
-        settings, control=msgspec.structs.replace(settings.control, preset="assisted")
+
+
+def _axes(text: str) -> list[int]:
+    names = [name.strip() for name in text.split(",")]
+    if unknown := [name for name in names if name not in AXES]:
+        raise InputError(f"--axes: there is no {unknown[0]!r}; name some of {','.join(AXES)}.")
+    return sorted({AXES.index(name) for name in names})
+
+
+def _band(text: str) -> tuple[float, float]:
+    try:
+        low, high = (float(part) for part in text.split(","))
+    except ValueError as error:
+        raise InputError(f"--band {text}: is not two numbers; give the band in Hz, such as 0.1,1.") from error
+    if not 0.02 <= low < high <= 5.0:
+        raise InputError(f"--band {text}: must rise, and lie within 0.02 and 5 Hz.")
+    return low, high
+
+
+def _room(ahead: Foreseen, settings: Settings, lags: Lags) -> tuple[float, float]:
+    """Return from where on the guard would slow the vehicle, level and up or down, m from the start."""
+    forward, left, up, yaw = lags
+    responses = ((forward, left, forward, yaw), (up, up, up, yaw))
+    guards = [Barrier(settings.shield, settings.limits, each) for each in responses]
+    level, upright = (
+        max(distance + guard.reach(speed + _PUSH) for distance, speed in zip(*rows, strict=True))
+        for guard, rows in zip(
+            guards, zip(ahead.distance.T.tolist(), ahead.speed.T.tolist(), strict=True), strict=True
+        )
     )
+    return level + _SHIFT_M, upright + _SHIFT_M
 
 
-def _signal(asked: argparse.Namespace, settings: Settings) -> Excitation:
-    """Return the excitation, so strong that it keeps to its share of the room.
+def _altitude(asked: float | None, room: float, fence: Fence) -> float:
+    """Return the altitude asked for, or the lowest that leaves room above the floor, in half metres."""
+    return asked if asked is not None else math.ceil(2.0 * (fence.floor + room)) / 2.0
+
+
+def _check_room(altitude: float, room: tuple[float, float], known: Surroundings, fence: Fence) -> None:
+    """Refuse where the guard would have to slow the vehicle, or worse.
 
     Raises:
-        InputError: An axis, a time, a share or the room makes no sense.
+        InputError: Something is too near.
     """
-    names = [name.strip() for name in asked.axes.split(",")]
-    if unknown := [name for name in names if name not in AXES]:
+    level, upright = room
+    distance, name = World(known.obstacles).clearance((0.0, 0.0, altitude))
+    # Thing, how near it is, how much room is needed towards it.
+    things = [("the floor", altitude - fence.floor, upright)]
+    things += [("the ceiling", fence.ceiling - altitude, upright)] if fence.ceiling else []
+    things += [("the fence", fence.radius - known.radius, level)] if fence.radius else []
+    things += [(f"obstacle {name!r}", distance - known.radius, max(room))]
+    thing, gap, needed = min(things, key=lambda each: each[1] - each[2])
+    if gap < needed - 1e-9:
         raise InputError(
-            f"--axes {asked.axes}: there is no {unknown[0] or 'axis without a name'}; give {', '.join(AXES)}."
+            f"{thing} is {max(gap, 0.0):.1f} m from the start at {altitude:g} m, and this excitation needs "
+            f"{needed:.1f} m; lower --amplitude, raise --band's low end, or choose another place or --altitude."
         )
-    if not 0.05 <= asked.share <= 1.0:
-        raise InputError(f"--share {asked.share:g}: give 0.05 to 1.")
-    if not _SHORTEST_S <= asked.seconds <= 300.0:
-        raise InputError(f"--seconds {asked.seconds:g}: give {_SHORTEST_S:g} to 300.")
-    height = asked.altitude - _FLOOR_M
-    if not 1.0 <= asked.room <= 100.0 or height < 1.0:
-        raise InputError(
-            f"--room {asked.room:g}, --altitude {asked.altitude:g}: there must be 1 m around and 2 m below at least."
-        )
-    axes = sorted({AXES.index(name) for name in names})
-    peaks = [asked.share * speed for speed in _fastest(settings)]
-    reached = excitation(peaks, asked.seconds, axes).excursion()
-    room = (asked.room / math.sqrt(2.0), asked.room / math.sqrt(2.0), height, math.inf)
-    fits = [
-        min(1.0, _ROOM_SHARE * free / far) if far > 0.0 else 1.0
-        for free, far in zip(room, reached, strict=True)
-    ]
-    return excitation([peak * fit for peak, fit in zip(peaks, fits, strict=True)], asked.seconds, axes)
 
 
-def _fastest(settings: Settings) -> tuple[float, float, float, float]:
-    """Return what the hand can ask of each axis, m/s and rad/s."""
-    forward, left, up, yaw = settings.mapping.speed
-    limits = settings.limits
-    horizontal = limits.horizontal_speed / math.sqrt(2.0)
-    return (
-        min(forward, horizontal),
-        min(left, horizontal),
-        min(up, limits.vertical_speed),
-        min(yaw, limits.yaw_rate),
+def _around(altitude: float, radius: float, room: float, fence: Fence) -> Fence:
+    """Return the fence around the start, no wider than the one there is."""
+    return Fence(
+        radius=min(radius, fence.radius or radius),
+        ceiling=min(altitude + room, fence.ceiling or altitude + room),
+        floor=max(altitude - room, fence.floor),
     )
 
 
-def _mission(mission: Mission | None, asked: argparse.Namespace, signal: Excitation) -> Mission:
-    """Return a mission without a target, with a fence around the start."""
+def _tell(planned: Plan) -> None:
+    """Say what will be flown."""
+    found, mission = planned.excitation, planned.run.mission
     assert mission is not None
-    height = asked.altitude - _FLOOR_M
-    return msgspec.structs.replace(
-        mission,
-        name="excite",
-        title="Excitation for identification",
-        takeoff_altitude_m=asked.altitude,
-        target=None,
-        route=(),
-        fence=Fence(radius=asked.room, ceiling=asked.altitude + height, floor=_FLOOR_M),
-        criteria=Criteria(time_limit_s=signal.seconds + _AROUND_S),
+    assert mission.fence is not None
+    forward, left, up, yaw = found.fastest()
+    where = "the simulated vehicle" if planned.run.simulated else f"the REAL vehicle at {planned.run.url}"
+    rows = (
+        ("flies", f"{where}, by itself, at {mission.takeoff_altitude_m:g} m"),
+        ("for", f"{found.duration:.0f} s in {len(found.stretches)} stretches, after taking off"),
+        ("fastest", f"{forward:.2f} m/s forward, {left:.2f} left, {up:.2f} up, {math.degrees(yaw):.0f} °/s"),
+        ("furthest", f"{planned.excursion:.2f} m from its start, as predicted, with some wind"),
+        (
+            "shield",
+            f"fence {mission.fence.radius:.1f} m, {mission.fence.floor:.1f} to {mission.fence.ceiling:.1f} m",
+        ),
+        ("stop it", "Ctrl-C: it holds and lands"),
     )
+    for name, words in rows:
+        sys.stderr.write(f"{name:<10} {words}\n")
+    sys.stderr.flush()
 
 
-def _announce(signal: Excitation, asked: argparse.Namespace) -> None:
-    """Say what will be done before it is."""
-    _, velocities = signal.sampled()
-    forward, left, up, yaw = abs(velocities).max(axis=0)
-    x, y, z, turn = signal.excursion()
-    around = f"{max(forward, left):.2f} m/s and {max(x, y):.1f} m around"
-    upright = f"{up:.2f} m/s and {z:.1f} m up and down"
-    turning = f"{math.degrees(yaw):.0f} °/s and {math.degrees(turn):.0f}°"
-    sys.stderr.write(
-        f"{signal.seconds:.0f} s of excitation at {asked.altitude:g} m: up to {around}, {upright}, {turning}; "
-        f"fence {asked.room:g} m.\n"
-    )
+def _fly(planned: Plan, asked: argparse.Namespace) -> int:
+    """Fly the plan, say how it went, and return the exit code."""
+    flown = planned.run
+    assert flown.mission is not None
+    stopped = False
+    with started(flown, asked) as (bus, supervisor):
+        outing = Outing(flown, flown.mission, bus, supervisor)
+        limit = 0.5 * (planned.excursion + max(planned.room))
+        hand = ExcitingHand(planned.excitation, flown.settings, outing.sender, limit, time.monotonic)
+        flight = outing.flight(hand)
+        try:
+            outing.fly(flight, hand)
+        except KeyboardInterrupt:
+            stopped = True
+            sys.stderr.write("Stopped: it lets go, holds and lands. Ctrl-C once more: it is left to hold.\n")
+            flight.come_down("stopped by the operator")
+            outing.fly(flight, hand)
+        supervisor.stop()
+    _tell_result(planned, flight.failure, hand.furthest)
+    return 130 if stopped else int(bool(flight.failure))
 
 
-class Exciter(HandleMover):
-    """The hand that excites: what it wants of the vehicle is turned back through the rate mapping.
-
-    Args:
-        signal: What is flown.
-        mapping: The mapping the pilot flies with.
-        sender: Takes the wish to the scripted hand.
-    """
-
-    def __init__(self, signal: Excitation, mapping: Mapping, sender: StickSender) -> None:
-        super().__init__(mapping, sender, time.monotonic)
-        self._signal = signal
-        self._began: float | None = None
-        self._elapsed = 0.0
-
-    def wish(self, view: Snapshot, mapping: RateMapping) -> Displacement:
-        """Return the displacement for what is excited now."""
-        if self._began is None:
-            self._began = view.t
-        self._elapsed = view.t - self._began
-        assert view.vehicle is not None
-        yaw = view.vehicle.position[3]
-        forward, left, up, rate = self._signal.at(self._elapsed)
-        x, y, z = body_from_world((forward, left, up), -yaw)
-        return mapping.displacement_for((x, y, z, rate), yaw)
-
-    def flown(self, director: Director) -> bool:  # noqa: ARG002 - the time alone tells
-        """Say whether all of it was flown, and the vehicle had time to rest."""
-        return self._elapsed >= self._signal.seconds + _REST_S
+def _tell_result(planned: Plan, failure: str, furthest: float) -> None:
+    recording = planned.run.recording
+    there = recording.exists()
+    rows = [
+        ("excitation", f"NOT flown to its end: {failure}" if failure else "flown"),
+        ("furthest", f"{furthest:.2f} m from its start, {planned.excursion:.2f} m predicted"),
+        ("recording", _shown(recording) if there else "none"),
+    ]
+    if there and not failure:
+        rows.append(("next", f"groundstation identify {_shown(recording)}"))
+    sys.stdout.write("".join(f"{name:<10} {words}\n" for name, words in rows))
 
 
-def _fly(planned: Run, bus: Bus, supervisor: Supervisor, signal: Excitation) -> int:
-    sender = StickSender(str(planned.hand))
-    hand = Exciter(signal, planned.settings.mapping, sender)
-    assert planned.mission is not None
-    flown = fly_steps(planned.mission, bus, supervisor, hand)
-    if flown.failure:
-        sys.stderr.write(f"given up: {flown.failure}\n")
-        return 1
-    print(planned.recording)
-    print(f"groundstation identify {planned.recording}", file=sys.stderr)
-    return 0
+def _shown(path: Path) -> str:
+    """Return a path as one would type it here."""
+    here = Path.cwd()
+    return str(path.relative_to(here) if path.is_relative_to(here) else path)

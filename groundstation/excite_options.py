@@ -3,69 +3,59 @@
 from __future__ import annotations
 
 import argparse
-from pathlib import Path
 
-HELP = "fly what identification needs: bounded, axis by axis"
+from groundstation import fly_options
+
+HELP = "fly what identification needs: safe, bounded, axis by axis"
 DESCRIPTION = """\
-Take off, fly sums of sines on each axis and then on all at once, and land: a recording for 'groundstation identify'.
-The hand does it, through the very processes of every flight, with the guard on and a fence around the start. Ctrl-C
-ends it: the hand is uncoupled and the vehicle holds."""
+Take off, move the vehicle around one place by sines on every axis, land: the flight that 'groundstation identify'
+learns a dynamic model from. The shield is on, the way is bounded before it is flown, and what will be flown is told
+first. Ctrl-C ends it: the vehicle holds and lands. docs/excite.md says what is flown and why."""
 EXAMPLES = """\
 examples:
-  groundstation excite --sim                                           the simulated vehicle
+  groundstation excite --sim                                             the simulated vehicle, two and a half minutes
   groundstation excite --sim --airframe x500 --model rigid_body
-  groundstation excite --connect udpin://0.0.0.0:14540 --confirm-real --room 8 --altitude 5
-  groundstation excite --sim --axes up,yaw --seconds 12 --share 0.3    less, and only these
+  groundstation excite --connect udpin://0.0.0.0:14540 --confirm-real    a real one: it flies by itself
+  groundstation excite --sim --axes forward,left --amplitude 0.3         gently, in the plane only
 
-exit codes: 0 flown and landed, 1 it was given up or a process died, 2 bad input
+exit codes: 0 flown and landed, 1 it was not flown to its end, 2 bad input or no room, 130 stopped
 """
 RUN = "groundstation.excite:run"
-AXES = ("forward", "left", "up", "yaw")
 
 
 def fill(parser: argparse.ArgumentParser) -> None:
     """Add the options to a parser."""
-    vehicle = parser.add_mutually_exclusive_group(required=True)
-    vehicle.add_argument("--sim", action="store_true", help="start and fly a simulated vehicle")
-    vehicle.add_argument("--connect", metavar="URL", help="a real vehicle, as in 'groundstation --connect'")
-    parser.add_argument("--confirm-real", action="store_true", help="with --connect: yes, fly it by itself")
-    parser.add_argument(
-        "--axes", default=",".join(AXES), metavar="NAMES", help=f"which (default: {','.join(AXES)})"
+    fly_options.add_vehicle(parser)
+    what = parser.add_argument_group("excitation")
+    what.add_argument(
+        "--axes",
+        default="forward,left,up,yaw",
+        metavar="NAMES",
+        help="which, one after the other, then all at once (default: forward,left,up,yaw)",
     )
-    parser.add_argument(
-        "--seconds",
-        type=float,
-        default=20.0,
-        metavar="S",
-        help="for each axis; all at once twice that (default: 20)",
-    )
-    parser.add_argument(
-        "--share",
+    what.add_argument(
+        "--amplitude",
         type=float,
         default=0.5,
         metavar="SHARE",
-        help="of the hand's full speed, at the peak (default: 0.5)",
+        help="peak of the velocity as a share of the handle's full speed, 0.05 to 1 (default: 0.5)",
     )
-    parser.add_argument(
-        "--room",
+    what.add_argument(
+        "--seconds",
         type=float,
-        default=6.0,
-        metavar="M",
-        help="free all around the start; a fence keeps it (default: 6)",
+        default=20.0,
+        metavar="N",
+        help="how long an axis is moved, all at once twice as long (default: 20)",
     )
-    parser.add_argument(
-        "--altitude", type=float, default=4.0, metavar="M", help="where it is flown (default: 4)"
+    what.add_argument("--band", default="0.1,1", metavar="LOW,HIGH", help="frequencies, Hz (default: 0.1,1)")
+    what.add_argument("--altitude", type=float, metavar="M", help="where (default: as high as is needed)")
+    what.add_argument(
+        "--mission",
+        metavar="NAME",
+        help="whose obstacles and wind there are (default: calm with --sim, else none)",
     )
-    parser.add_argument("--airframe", metavar="NAME", help="with --sim: a preset's name or a .toml file")
-    parser.add_argument(
-        "--model", choices=("kinematic", "dynamic", "rigid_body"), help="with --sim: motion model"
-    )
-    parser.add_argument(
-        "--channel", metavar="KEY=VALUE,...", help="with --sim: what the way to the vehicle does"
-    )
-    parser.add_argument("--seed", type=int, default=0, metavar="N", help="with --sim (default: 0)")
-    parser.add_argument("--config", type=Path, metavar="FILE", help="settings (default: groundstation.toml)")
-    parser.add_argument("--logs", type=Path, default=Path("logs"), metavar="DIR", help="recordings go here")
-    parser.add_argument("--pilot", metavar="NAME", help="who flies (default: who is logged in)")
-    parser.add_argument("--rerun", action="store_true", help="show the flight live in the Rerun viewer")
-    parser.set_defaults(headless=True, json=False, device=None, controller="paper", mission="free")
+    what.add_argument("--confirm-real", action="store_true", help="with --connect: yes, fly it by itself")
+    fly_options.add_simulated(parser)
+    fly_options.add_recording(parser)
+    # What a flight has besides: the scripted hand flies, by the paper's controller.
+    parser.set_defaults(headless=True, json=False, device=None, controller="paper")

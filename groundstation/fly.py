@@ -3,19 +3,22 @@
 from __future__ import annotations
 
 import argparse
+import contextlib
 import datetime
 import getpass
 import os
 import signal
 import sys
+from collections.abc import Generator
 from pathlib import Path
 from typing import NoReturn
 
 import msgspec
 
+from groundstation.bus import Bus
 from groundstation.config import Settings, check_flown_by_rate, load_settings
 from groundstation.errors import InputError
-from groundstation.processes import free_port, running
+from groundstation.processes import Supervisor, free_port, running
 from groundstation.run import Run
 from groundstation.run_folder import new_run_id, run_folder, sweep_dead_runs
 from groundstation.terminal import terminal_path
@@ -34,11 +37,8 @@ def fly(asked: argparse.Namespace) -> int:
         InputError: Something asked for cannot be.
     """
     _check(asked)
-    sweep_dead_runs()
     run = plan(asked)
-    leave_when_told()
-    options = sim_options(asked)
-    with running(run, "headless" if asked.headless else "screen", options) as (bus, supervisor):
+    with started(run, asked) as (bus, supervisor):
         if asked.headless:
             from groundstation.headless import fly_headless
 
@@ -48,10 +48,15 @@ def fly(asked: argparse.Namespace) -> int:
         return fly_on_screen(run, bus, supervisor)
 
 
-def leave_when_told() -> None:
-    """Ended from outside, or the terminal closed: leave by the same way as always, children first."""
+@contextlib.contextmanager
+def started(run: Run, asked: argparse.Namespace) -> Generator[tuple[Bus, Supervisor]]:
+    """Run a run's processes: yield the bus and the supervisor, and leave nothing behind however the block ends."""
+    sweep_dead_runs()
+    # Ended from outside, or the terminal closed: leave by the same way as always, children first.
     for number in (signal.SIGTERM, signal.SIGHUP):
         signal.signal(number, _leave)
+    with running(run, "headless" if asked.headless else "screen", _sim_options(asked)) as both:
+        yield both
 
 
 def _leave(number: int, _frame: object) -> NoReturn:
@@ -87,7 +92,7 @@ def plan(asked: argparse.Namespace) -> Run:
         mission=mission,
         mission_path=str(path.resolve()) if path else "",
         settings=settings,
-        log=str(_log_stem(asked.logs, now, mission)),
+        log=str(log_stem(asked.logs, now, mission.name if mission else "flight")),
         viewer_url=_viewer(asked),
         controller=asked.controller,
         pilot=_pilot(asked.pilot),
@@ -111,14 +116,19 @@ def _check(asked: argparse.Namespace) -> None:
         raise InputError(
             "--headless --connect flies a real vehicle by itself; add --confirm-real if you mean it."
         )
+    check_simulated(asked)
+    if not asked.headless and not (sys.stdin.isatty() and sys.stdout.isatty()):
+        raise InputError("the screen needs a terminal; use --headless --mission NAME without one.")
+
+
+def check_simulated(asked: argparse.Namespace) -> None:
+    """Refuse options of the simulated vehicle that mean nothing, or that it would refuse."""
     if asked.connect and (asked.airframe or asked.model or asked.channel):
         raise InputError(
             "--airframe, --model and --channel are the simulator's; a real vehicle brings its own."
         )
     if asked.channel:
         _check_channel(asked.channel)
-    if not asked.headless and not (sys.stdin.isatty() and sys.stdout.isatty()):
-        raise InputError("the screen needs a terminal; use --headless --mission NAME without one.")
 
 
 def _mission_path(asked: argparse.Namespace) -> Path | None:
@@ -184,8 +194,7 @@ def _check_controller(spec: str, settings: Settings) -> None:
         raise InputError(f"control.airframe: {error}") from error
 
 
-def sim_options(asked: argparse.Namespace) -> tuple[str, ...]:
-    """Return what the simulated vehicle is started with."""
+def _sim_options(asked: argparse.Namespace) -> tuple[str, ...]:
     options = ["--seed", str(asked.seed)]
     if asked.airframe:
         options += ["--airframe", asked.airframe]
@@ -216,14 +225,19 @@ def _pilot(named: str | None) -> str:
         return ""
 
 
-def _log_stem(folder: Path, now: datetime.datetime, mission: Mission | None) -> Path:
+def log_stem(folder: Path, now: datetime.datetime, name: str) -> Path:
+    """Return the path of a recording without suffix, which no file has yet.
+
+    Raises:
+        InputError: The folder cannot be written.
+    """
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise InputError(f"{folder}: cannot be made a folder for logs ({error.strerror}).") from error
     if not os.access(folder, os.W_OK):
         raise InputError(f"{folder}: is not writable; recordings go there, choose another with --logs.")
-    name = mission.name.replace(" ", "-") if mission else "flight"
+    name = name.replace(" ", "-")
     stem = folder.resolve() / f"{now:%Y-%m-%d_%H-%M-%S}_{name}"
     number = 2
     while any(stem.parent.glob(f"{stem.name}.*")):

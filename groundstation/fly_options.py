@@ -8,6 +8,14 @@ from pathlib import Path
 
 def fill(parser: argparse.ArgumentParser) -> None:
     """Add the options to a parser."""
+    add_vehicle(parser)
+    add_flight(parser)
+    add_simulated(parser)
+    add_recording(parser)
+
+
+def add_vehicle(parser: argparse.ArgumentParser) -> None:
+    """Add which vehicle is flown."""
     vehicle = parser.add_argument_group("vehicle (one of)").add_mutually_exclusive_group()
     vehicle.add_argument("--sim", action="store_true", help="start and fly a simulated vehicle")
     vehicle.add_argument(
@@ -15,6 +23,10 @@ def fill(parser: argparse.ArgumentParser) -> None:
         metavar="URL",
         help="fly the vehicle at udpin://HOST:PORT, udpout://HOST:PORT, tcpout://HOST:PORT or serial://PORT:BAUD",
     )
+
+
+def add_flight(parser: argparse.ArgumentParser) -> None:
+    """Add how it is flown."""
     flight = parser.add_argument_group("flight")
     flight.add_argument(
         "--mission", metavar="NAME", help="a mission by name or .toml file (default: free flight)"
@@ -37,6 +49,10 @@ def fill(parser: argparse.ArgumentParser) -> None:
         action="store_true",
         help="with --headless --connect: yes, fly a real vehicle by itself",
     )
+
+
+def add_simulated(parser: argparse.ArgumentParser) -> None:
+    """Add what a simulated vehicle is."""
     sim = parser.add_argument_group("simulated vehicle (with --sim)")
     sim.add_argument(
         "--airframe", metavar="NAME", help="a preset's name or a .toml file (default: the mission's)"
@@ -54,6 +70,10 @@ def fill(parser: argparse.ArgumentParser) -> None:
     sim.add_argument(
         "--seed", type=int, metavar="N", help="seed of all that is random (default: 0)", default=0
     )
+
+
+def add_recording(parser: argparse.ArgumentParser) -> None:
+    """Add settings, and where the recording goes."""
     general = parser.add_argument_group("settings and recording")
     general.add_argument("--config", type=Path, metavar="FILE", help="settings (default: groundstation.toml)")
     general.add_argument("--pilot", metavar="NAME", help="who flies (default: who is logged in)")

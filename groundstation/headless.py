@@ -1,8 +1,8 @@
-"""A flight without a screen: the scripted hand flies a mission through the very processes a person would.
+"""A flight without a screen: a hand of the program's own flies through the very processes a person would.
 
-A simulated operator (`sim.operator`) looks at the vehicle and decides where it should go; what they want of it
-is turned back through the rate mapping into where the hand should be, and the arm (`drivers.scripted`) takes it
-there.
+Whose hand it is, the flight does not know. A mission's is a simulated operator's (`sim.operator`): they look at the
+vehicle and decide where it should go; what they want of it is turned back through the rate mapping into where the
+hand should be, and the arm (`drivers.scripted`) takes it there.
 """
 
 from __future__ import annotations
@@ -11,26 +11,24 @@ import sys
 import time
 from collections.abc import Callable
 from enum import Enum
-from typing import NamedTuple
+from typing import Protocol
 
-from drivers.device import ZERO3
 from drivers.stick import StickSender
 from groundstation import config
 from groundstation.bus import Bus
 from groundstation.console import Console, Snapshot
 from groundstation.errors import InputError
-from groundstation.messages import CommandAnswer, CommandKind, Health, Phase, ServoReport
-from groundstation.pilot.mapping import Displacement, RateMapping
+from groundstation.messages import CommandAnswer, CommandKind, Health, Phase
+from groundstation.pilot.mapping import RateMapping
 from groundstation.processes import Supervisor
 from groundstation.run import Run
 from groundstation.training.director import Director, Stage
 from groundstation.training.follower import MissionFollower
 from groundstation.training.mission import Mission
-from groundstation.training.summary import Narrator, summarise
+from groundstation.training.summary import Narrator, figures_of, summarise
 from sim.operator import Operator
 
 TURN_S = 0.02
-CENTRE = Displacement(ZERO3, 0.0)
 _STEP_S = 20.0
 _RETRY_S = 1.0
 # Beyond the mission's own limit the flight is given up and landed, s.
@@ -70,22 +68,45 @@ _WAY_DOWN = {
 }
 
 
+class Hand(Protocol):
+    """Moves the handle, and knows when it is through."""
+
+    @property
+    def patience_s(self) -> float:
+        """Return how long it may take, s."""
+        ...
+
+    def move(self, view: Snapshot, *, flying: bool) -> None:
+        """Hold the handle where it should be; at the centre while there is nothing to fly."""
+        ...
+
+    def finished(self, view: Snapshot) -> bool:
+        """Say whether what was to be flown is flown."""
+        ...
+
+    def fault(self, view: Snapshot) -> str:
+        """Return in words why the flight must end, or ""."""
+        ...
+
+    def told(self, view: Snapshot) -> str:
+        """Return how it is going, for people."""
+        ...
+
+
 class HeadlessFlight:
-    """Flies one mission; `turn` is one pass, to be called every `TURN_S`.
+    """Flies from the ground to the ground; `turn` is one pass, to be called every `TURN_S`.
 
     Args:
-        mission: What to fly.
         console: The operator's side of the bus.
         director: Follows the mission.
-        hand: Who moves the handle.
+        hand: Who flies.
 
     Attributes:
         step: What the flight is at.
         failure: Why it was given up, in words; empty while all is well.
     """
 
-    def __init__(self, mission: Mission, console: Console, director: Director, hand: HandleMover) -> None:
-        self._mission = mission
+    def __init__(self, console: Console, director: Director, hand: Hand) -> None:
         self._console = console
         self._director = director
         self._hand = hand
@@ -109,6 +130,12 @@ class HeadlessFlight:
         elif self.step in _COMMANDS and view.t >= self._next_try:
             self._next_try = view.t + _RETRY_S
             self._console.command(_COMMANDS[self.step])
+
+    def come_down(self, why: str) -> None:
+        """Give the flight up: let go of the vehicle, which holds, and land it where it is in the air."""
+        self.failure = self.failure or why
+        if self.step not in _WAY_DOWN.values():
+            self._come_down()
 
     def abort(self, why: str) -> None:
         """Give the flight up: the pilot lets go, the vehicle holds, nothing more is asked of it."""
@@ -142,15 +169,16 @@ class HeadlessFlight:
         return self.step is Step.LAND and not status.armed and self._director.stage in _DOWN
 
     def _flown(self, view: Snapshot) -> bool:
-        if self._hand.flown(self._director):
+        if self._hand.finished(view):
             return True
         if view.pilot is not None and view.pilot.phase == Phase.DISENGAGED:
             self.failure = f"the hand was uncoupled: {view.pilot.reason.decode(errors='replace')}"
-            return True
-        return False
+        else:
+            self.failure = self._hand.fault(view)
+        return bool(self.failure)
 
     def _patience(self) -> float:
-        return self._mission.criteria.time_limit_s + _GRACE_S if self.step is Step.FLY else _STEP_S + 10.0
+        return self._hand.patience_s if self.step is Step.FLY else _STEP_S + 10.0
 
     def _give_up(self, view: Snapshot) -> None:
         """Say why, and come down if in the air."""
@@ -158,8 +186,12 @@ class HeadlessFlight:
         if self.step is Step.CONNECT:
             why = f" ({_missing(view)})"
         self.failure = self.failure or f"{self.step.value} took too long{why}"
+        self._come_down()
+
+    def _come_down(self) -> None:
+        """Go on with the step that leads down from the present one."""
         self.step = _WAY_DOWN.get(self.step, Step.DONE)
-        self._since, self._next_try = view.t, 0.0
+        self._since, self._next_try = None, 0.0
 
 
 def _missing(view: Snapshot) -> str:
@@ -173,47 +205,11 @@ def _missing(view: Snapshot) -> str:
     return "the servo has not started"
 
 
-class HandleMover:
-    """Turns what is wanted of the vehicle into where the handle should be, and tells the scripted hand.
-
-    Args:
-        mapping: The mapping the pilot flies with.
-        sender: Takes the wish to the scripted hand.
-        clock: Monotonic seconds.
-    """
-
-    def __init__(self, mapping: config.Mapping, sender: StickSender, clock: Callable[[], float]) -> None:
-        self._settings = mapping
-        self._mapping: RateMapping | None = None
-        self._workspace = 0.0
-        self._sender = sender
-        self._clock = clock
-
-    def move(self, view: Snapshot, *, flying: bool) -> None:
-        """Hold the handle where it is wanted; at the centre while there is nothing to fly."""
-        position, twist = CENTRE
-        device, state = view.device, view.vehicle
-        if device and device.workspace != self._workspace:
-            self._workspace = device.workspace
-            self._mapping = RateMapping(self._settings, device.workspace)
-        if flying and self._mapping and state and state.valid:
-            position, twist = self.wish(view, self._mapping)
-        self._sender.send(position, twist, 0, self._clock())
-
-    def wish(self, view: Snapshot, mapping: RateMapping) -> Displacement:  # noqa: ARG002 - it wants nothing
-        """Return where the handle should be, as the vehicle is seen."""
-        return CENTRE
-
-    def flown(self, director: Director) -> bool:
-        """Say whether there is nothing more to fly."""
-        return director.stage is Stage.RETURNING
-
-
-class Hand(HandleMover):
+class OperatorHand:
     """The simulated operator's head and arm: from what is seen to where the handle should be.
 
     Args:
-        mission: Gives the route and the target.
+        director: Follows the mission, which gives the route and the target.
         mapping: The mapping the pilot flies with.
         sender: Takes the wish to the scripted hand.
         seed: Of the operator's noise.
@@ -222,24 +218,50 @@ class Hand(HandleMover):
 
     def __init__(
         self,
-        mission: Mission,
+        director: Director,
         mapping: config.Mapping,
         sender: StickSender,
         seed: int,
         clock: Callable[[], float],
     ) -> None:
-        super().__init__(mapping, sender, clock)
+        mission = director.mission
+        self._director = director
+        self.patience_s = mission.criteria.time_limit_s + _GRACE_S
         route, target = mission.route, mission.target
         self._operator = Operator(route, target.position, seed=seed) if target else None
+        self._settings = mapping
+        self._mapping: RateMapping | None = None
+        self._workspace = 0.0
+        self._sender = sender
+        self._clock = clock
 
-    def wish(self, view: Snapshot, mapping: RateMapping) -> Displacement:
-        """Return what the operator decides."""
+    def move(self, view: Snapshot, *, flying: bool) -> None:
+        """Hold the handle where the operator wants it; at the centre while there is nothing to fly."""
+        displacement = ((0.0, 0.0, 0.0), 0.0)
         state = view.vehicle
-        if self._operator is None or state is None:
-            return CENTRE
-        x, y, z, yaw = state.position
-        vx, vy, vz, _ = state.velocity
-        return mapping.displacement_for(self._operator.decide(view.t, (x, y, z, yaw), (vx, vy, vz)), yaw)
+        device = view.device
+        if device and device.workspace != self._workspace:
+            self._workspace = device.workspace
+            self._mapping = RateMapping(self._settings, device.workspace)
+        if flying and self._operator and self._mapping and state and state.valid:
+            x, y, z, yaw = state.position
+            vx, vy, vz, _ = state.velocity
+            wish = self._operator.decide(view.t, (x, y, z, yaw), (vx, vy, vz))
+            displacement = self._mapping.displacement_for(wish, yaw)
+        position, twist = displacement
+        self._sender.send(position, twist, 0, self._clock())
+
+    def finished(self, view: Snapshot) -> bool:  # noqa: ARG002
+        """Say whether the target has been held."""
+        return self._director.stage is Stage.RETURNING
+
+    def fault(self, view: Snapshot) -> str:  # noqa: ARG002
+        """Return "": the mission's own limits end it."""
+        return ""
+
+    def told(self, view: Snapshot) -> str:
+        """Return the mission's figures."""
+        return figures_of(self._director, view)
 
 
 def fly_headless(run: Run, bus: Bus, supervisor: Supervisor, *, as_json: bool, seed: int) -> int:
@@ -247,42 +269,53 @@ def fly_headless(run: Run, bus: Bus, supervisor: Supervisor, *, as_json: bool, s
     mission = run.mission
     if mission is None:
         raise InputError("--headless needs a --mission to fly.")
-    hand = Hand(mission, run.settings.mapping, StickSender(str(run.hand)), seed, time.monotonic)
-    flown = fly_steps(mission, bus, supervisor, hand)
-    return summarise(run, flown.director, flown.servo, flown.failure, as_json=as_json)
+    outing = Outing(run, mission, bus, supervisor)
+    hand = OperatorHand(outing.director, run.settings.mapping, outing.sender, seed, time.monotonic)
+    flight = outing.flight(hand)
+    view = outing.fly(flight, hand)
+    supervisor.stop()
+    return summarise(run, outing.director, view.servo, flight.failure, as_json=as_json)
 
 
-class Flown(NamedTuple):
-    """A headless flight that is over.
+class Outing:
+    """All that a flight without a screen needs, and the loop that flies it.
+
+    Args:
+        run: The run.
+        mission: What is flown, for the director.
+        bus: The supervisor's place on it.
+        supervisor: Of the run's processes.
 
     Attributes:
-        director: Has followed the mission.
-        servo: How well the servo kept its time.
-        failure: Why it was given up; "" where it was not.
+        director: Follows the mission.
+        sender: Moves the scripted hand.
     """
 
-    director: Director
-    servo: ServoReport | None
-    failure: str
+    def __init__(self, run: Run, mission: Mission, bus: Bus, supervisor: Supervisor) -> None:
+        self._bus, self._supervisor = bus, supervisor
+        self._console = Console(bus, "headless")
+        self._follower = MissionFollower(mission, bus)
+        self.director = self._follower.director
+        self.sender = StickSender(str(run.hand))
 
+    def flight(self, hand: Hand) -> HeadlessFlight:
+        """Return a flight with this hand."""
+        return HeadlessFlight(self._console, self.director, hand)
 
-def fly_steps(mission: Mission, bus: Bus, supervisor: Supervisor, hand: HandleMover) -> Flown:
-    """Fly from connecting to landing with a hand, telling on stderr how it goes; the processes are ended."""
-    console = Console(bus, "headless")
-    follower = MissionFollower(mission, bus)
-    director = follower.director
-    flight = HeadlessFlight(mission, console, director, hand)
-    narrator = Narrator(sys.stderr)
-    view = console.snapshot()
-    while flight.step is not Step.DONE:
-        for sentence in supervisor.poll():
-            flight.abort(sentence)
-        view = console.snapshot()
-        follower.look(view)
-        flight.turn(view)
-        narrator.tell(flight.step.value, director, view)
-        bus.heartbeat()
-        time.sleep(TURN_S)
-    narrator.close()
-    supervisor.stop()
-    return Flown(director, view.servo, flight.failure)
+    def fly(self, flight: HeadlessFlight, hand: Hand) -> Snapshot:
+        """Fly until it is done, telling how it goes on stderr; return what was seen last."""
+        narrator = Narrator(sys.stderr)
+        view = self._console.snapshot()
+        try:
+            while flight.step is not Step.DONE:
+                for sentence in self._supervisor.poll():
+                    flight.abort(sentence)
+                view = self._console.snapshot()
+                self._follower.look(view)
+                flight.turn(view)
+                narrator.tell(flight.step.value, hand.told(view), view)
+                self._bus.heartbeat()
+                time.sleep(TURN_S)
+        finally:
+            narrator.close()
+        return view

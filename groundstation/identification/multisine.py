@@ -1,11 +1,17 @@
-"""What is flown to be identified from: sums of sines, axis by axis, then all axes at once.
+"""Multisines: sums of sines on chosen lines, with little crest, for telling a response apart.
 
-Phases are Schroeder's (1970, Synthesis of low-peak-factor signals and binary sequences with low autocorrelation):
-they keep the peak of a sum of sines low. Every sine has whole periods in its stretch, so it ends where it began.
+    x(t) = Σ b_k sin(2π f_k t + φ_k),        f_k = n_k / T
+
+What is made is a *way*, x, and the velocity is its derivative: so the way is bounded by construction, and over a
+period T the velocity has no mean. The velocities of all lines are alike, b_k = a / 2π f_k; phases are Schroeder's or,
+where they have less crest, the best of many random ones (Schroeder 1970, Synthesis of low-peak-factor signals and
+binary sequences with low autocorrelation; Pintelon and Schoukens 2012, System Identification: A Frequency Domain
+Approach, ch. 5).
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import NamedTuple
 
@@ -14,105 +20,99 @@ import numpy.typing as npt
 
 Numbers = npt.NDArray[np.float64]
 
-AXES = 4
-# Of an axis flown alone, Hz: from far below to above what a multirotor's velocity follows.
-LOWEST_HZ, HIGHEST_HZ = 0.08, 1.0
-_LINES = 8
-# A stretch begins and ends softly, s.
-FADE_S = 1.0
-_GRID_S = 0.01
+# Phases that are tried.
+_DRAWS = 300
+# Samples a period of the fastest line, at which peaks are looked for.
+_FINENESS = 24
 
 
-class Stretch(NamedTuple):
-    """A time in which some axes are excited.
+class Peaks(NamedTuple):
+    """Bounds of a signal: way, m or rad; and its first three derivatives."""
+
+    way: float
+    velocity: float
+    acceleration: float
+    jerk: float
+
+
+class Multisine(NamedTuple):
+    """A sum of sines.
 
     Attributes:
-        start, end: s.
-        lines: (4, k), frequencies by axis, Hz; 0 where an axis has no such line.
-        phases: (4, k), rad.
-        amplitude: (4,), of each sine, m/s and rad/s; 0 where the axis rests.
+        period: T, s.
+        lines: (k,), n_k, multiples of 1 / T.
+        amplitudes: (k,), b_k, of the way, m or rad.
+        phases: (k,), φ_k, rad.
     """
 
-    start: float
-    end: float
-    lines: Numbers
+    period: float
+    lines: npt.NDArray[np.int64]
+    amplitudes: Numbers
     phases: Numbers
-    amplitude: Numbers
-
-
-class Excitation(NamedTuple):
-    """All stretches, one behind the other."""
-
-    stretches: tuple[Stretch, ...]
 
     @property
-    def seconds(self) -> float:
-        """How long it takes."""
-        return self.stretches[-1].end
+    def frequencies(self) -> Numbers:
+        """Return f_k, Hz."""
+        return self.lines / self.period
 
-    def at(self, t: float) -> tuple[float, float, float, float]:
-        """Return velocities on the vehicle's axes at a time, m/s and rad/s; zero before and after."""
-        for stretch in self.stretches:
-            if stretch.start <= t < stretch.end:
-                forward, left, up, yaw_rate = _velocities(stretch, np.array([t]))[0]
-                return float(forward), float(left), float(up), float(yaw_rate)
-        return 0.0, 0.0, 0.0, 0.0
+    def scaled(self, share: float) -> Multisine:
+        """Return the same with other amplitudes."""
+        return self._replace(amplitudes=self.amplitudes * share)
 
-    def sampled(self) -> tuple[Numbers, Numbers]:
-        """Return times, (n,), s, and velocities, (n, 4), on a fine grid."""
-        times = [np.arange(each.start, each.end, _GRID_S) for each in self.stretches]
-        velocities = [_velocities(each, t) for each, t in zip(self.stretches, times, strict=True)]
-        return np.concatenate(times), np.concatenate(velocities)
+    def at(self, t: float) -> tuple[float, float]:
+        """Return way and velocity at a time, s."""
+        omega = math.tau * self.frequencies
+        angle = omega * t + self.phases
+        return float(self.amplitudes @ np.sin(angle)), float((self.amplitudes * omega) @ np.cos(angle))
 
-    def excursion(self) -> Numbers:
-        """Return how far each axis gets from the start, (4,), m and rad, were the vehicle to do what is asked."""
-        _, velocities = self.sampled()
-        return np.abs(np.cumsum(velocities, axis=0) * _GRID_S).max(axis=0)
+    def peaks(self) -> Peaks:
+        """Return what way, velocity, acceleration and jerk are never beyond.
+
+        Between samples a trigonometric polynomial of degree n on N > 2 n points is no more than its largest sample
+        divided by cos(π n / N) (Ehlich and Zeller 1964, Schwankung von Polynomen zwischen Gitterpunkten).
+        """
+        samples = _FINENESS * int(self.lines.max())
+        t = np.arange(samples) * (self.period / samples)
+        omega = math.tau * self.frequencies
+        angles = np.outer(t, omega) + self.phases
+        sines, cosines = np.sin(angles), np.cos(angles)
+        found = [
+            np.abs(wave @ (self.amplitudes * omega**order)).max()
+            for order, wave in enumerate((sines, cosines, sines, cosines))
+        ]
+        between = math.cos(math.pi / _FINENESS)
+        way, velocity, acceleration, jerk = (float(peak) / between for peak in found)
+        return Peaks(way, velocity, acceleration, jerk)
+
+    def crest(self) -> float:
+        """Return the velocity's peak by its root mean square."""
+        rms = math.sqrt(0.5 * float(np.square(self.amplitudes * math.tau * self.frequencies).sum()))
+        return self.peaks().velocity / rms
 
 
-def excitation(peaks: Sequence[float], seconds: float, axes: Sequence[int]) -> Excitation:
-    """Return the excitation of some axes: each alone, then all of them at once.
+def lines_within(low: float, high: float, period: float) -> range:
+    """Return the multiples of 1 / period, s, that lie within a band, Hz."""
+    return range(max(1, math.ceil(low * period - 1e-9)), math.floor(high * period + 1e-9) + 1)
+
+
+def multisine(lines: Sequence[int], period: float, seed: int) -> Multisine:
+    """Return a multisine whose velocity has a peak of 1.
 
     Args:
-        peaks: (4,), largest velocity of each axis, m/s and rad/s.
-        seconds: Of a stretch; the one with all axes is twice as long.
-        axes: Which, 0 to 3.
+        lines: n_k, one at least, all different and above 0.
+        period: T, s.
+        seed: Of the random phases.
     """
-    stretches: list[Stretch] = []
-    start = 0.0
-    for axis in axes:
-        stretches.append(_stretch(start, seconds, [axis], peaks))
-        start += seconds
-    if len(axes) > 1:
-        stretches.append(_stretch(start, 2.0 * seconds, axes, peaks))
-    return Excitation(tuple(stretches))
-
-
-def _stretch(start: float, seconds: float, axes: Sequence[int], peaks: Sequence[float]) -> Stretch:
-    """Return a stretch in which every axis has lines of its own, so that their answers can be told apart."""
-    periods = np.unique(np.rint(np.geomspace(LOWEST_HZ, HIGHEST_HZ, _LINES * len(axes)) * seconds)).astype(
-        np.float64
+    numbers = np.array(sorted(lines), dtype=np.int64)
+    amplitudes: Numbers = np.asarray(period / (math.tau * numbers), dtype=np.float64)
+    count = len(numbers)
+    k = np.arange(count)
+    tried = np.vstack(
+        (-math.pi * k * (k + 1) / count, np.random.default_rng(seed).uniform(0.0, math.tau, (_DRAWS, count)))
     )
-    # Where lines are few the same number of periods would come twice: then there are fewer lines.
-    count = max(1, len(periods) // len(axes))
-    lines, phases = np.zeros((AXES, count)), np.zeros((AXES, count))
-    amplitude = np.zeros(AXES)
-    number = np.arange(count)
-    for place, axis in enumerate(axes):
-        lines[axis] = periods[place :: len(axes)][:count] / seconds
-        phases[axis] = -np.pi * number * (number + 1) / count
-        amplitude[axis] = 1.0
-    unscaled = Stretch(start, start + seconds, lines, phases, amplitude)
-    largest = np.abs(_velocities(unscaled, np.arange(start, start + seconds, _GRID_S))).max(axis=0)
-    scale = np.divide(np.asarray(peaks, np.float64), largest, out=np.zeros(AXES), where=largest > 0.0)
-    return unscaled._replace(amplitude=amplitude * scale)
-
-
-def _velocities(stretch: Stretch, t: Numbers) -> Numbers:
-    """Return velocities within a stretch, (n, 4)."""
-    since = t - stretch.start
-    turns = 2.0 * np.pi * since[:, None, None] * stretch.lines + stretch.phases
-    active = stretch.lines > 0.0
-    sines = np.where(active, np.sin(turns), 0.0).sum(axis=2)
-    fade = np.clip(np.minimum(since, stretch.end - t) / FADE_S, 0.0, 1.0)
-    return sines * stretch.amplitude * fade[:, None]
+    samples = 8 * int(numbers.max())
+    angles = np.outer(numbers, np.arange(samples) * (math.tau / samples))
+    # |Σ cos(angle + φ)| of all draws at once: the real part of e^(iφ) e^(i angle).
+    peaks = np.abs(np.real(np.exp(1j * tried) @ np.exp(1j * angles))).max(axis=1)
+    best = Multisine(period, numbers, amplitudes, tried[int(peaks.argmin())])
+    return best.scaled(1.0 / best.peaks().velocity)

@@ -101,7 +101,8 @@ class SetpointMaker:
         self._limiter = SetpointLimiter(settings.limits)
         self._acceleration = settings.limits.acceleration
         chi = surroundings.chi
-        self._compensation = Compensation(chi, settings.control.k4) if chi else None
+        wanted = chi if settings.control.compensation else None
+        self._compensation = Compensation(wanted, settings.control.k4) if wanted else None
         bare = lags_of(chi) if chi else USUAL_LAGS
         self._lags: dict[bool, Lags] = {False: bare, True: COMPENSATED}
         self._guards = {on: _guard(settings, lags) for on, lags in self._lags.items()}

@@ -30,8 +30,8 @@ class Narrator:
         self._next = 0.0
         self._told_t = time.monotonic()
 
-    def tell(self, step: str, director: Director, view: Snapshot) -> None:
-        """Tell what is new."""
+    def tell(self, step: str, figures: str, view: Snapshot) -> None:
+        """Tell what is new: the step, how it is going, and events."""
         for event in view.events:
             if event.t > self._told_t:
                 self._told_t = event.t
@@ -39,7 +39,7 @@ class Narrator:
                     self._line(_words(event))
         if self._live and view.t >= self._next:
             self._next = view.t + _EVERY_S
-            self._out.write(f"\r\x1b[K{step}: {_figures(director, view)}")
+            self._out.write(f"\r\x1b[K{step}: {figures}")
             self._out.flush()
         elif not self._live and step != self._last:
             self._line(step)
@@ -126,7 +126,8 @@ def _metres(length: object) -> str:
     return "–" if length is None else f"{length} m"
 
 
-def _figures(director: Director, view: Snapshot) -> str:
+def figures_of(director: Director, view: Snapshot) -> str:
+    """Return how a mission is going, for people."""
     parts = [director.stage.value]
     if director.legs:
         parts.append(f"point {min(director.leg + 1, director.legs)}/{director.legs}")

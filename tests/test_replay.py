@@ -150,6 +150,13 @@ def test_a_flight_that_was_never_coupled_has_nothing_to_replay(tmp_path, flown, 
     assert (code, "never coupled" in err) == (2, True)
 
 
+@pytest.mark.parametrize("channel", ["loss=0.9", "delay=3"])
+def test_a_channel_over_which_nothing_is_coupled_is_told(flown, capsys, channel):
+    code, out, err = run(capsys, flown, "--channel", channel)
+    assert (code, out) == (1, "")
+    assert "never coupled" in err
+
+
 def a_hand():
     t = np.arange(0.0, 1.0, 0.01)
     position = np.column_stack((0.01 * t, -t, t))

@@ -6,7 +6,6 @@ import argparse
 import math
 import sys
 from pathlib import Path
-from typing import TextIO
 
 from groundstation.errors import InputError
 from groundstation.export import folder
@@ -14,6 +13,7 @@ from groundstation.export.output import check, written
 from groundstation.export.selection import Asked, Selection
 from groundstation.review.choosing import chosen
 from groundstation.review.flight import Flight
+from groundstation.status_line import StatusLine
 
 
 def run(asked: argparse.Namespace) -> int:
@@ -28,17 +28,14 @@ def run(asked: argparse.Namespace) -> int:
     in_folder = asked.to != "mcap" and asked.hz is None
     for out in outs:
         check(out, folder=in_folder, force=asked.force)
-    progress = Progress(sys.stderr)
-    try:
-        progress.step(f"reading {path}")
+    with StatusLine(sys.stderr) as line:
+        line.step(f"reading {path}")
         selection = Selection(Flight(path), what)
         if selection.unknown:
-            progress.tell(f"Left out, not known to this program: {', '.join(selection.unknown)}.")
+            line.note(f"Left out, not known to this program: {', '.join(selection.unknown)}.")
         for out in outs:
             with written(out, folder=in_folder, force=asked.force) as draft:
-                _write(selection, asked, draft, out, progress)
-    finally:
-        progress.close()
+                _write(selection, asked, draft, out, line)
     for out in outs:
         print(f"{out} ({_size(out) / 1e6:.1f} MB)")
     return 0
@@ -68,56 +65,23 @@ def _outs(asked: argparse.Namespace, recording: Path) -> list[Path]:
     return [asked.out or recording.with_name(f"{recording.stem}_{asked.to}")]
 
 
-def _write(
-    selection: Selection, asked: argparse.Namespace, draft: Path, out: Path, progress: Progress
-) -> None:
+def _write(selection: Selection, asked: argparse.Namespace, draft: Path, out: Path, line: StatusLine) -> None:
     """Write one of the outputs."""
     if asked.to == "mcap":
         from groundstation.export.mcap_file import write_mcap
 
-        progress.tell(f"writing {out}")
-        write_mcap(selection, draft, progress.step)
+        line.tell(f"writing {out}")
+        write_mcap(selection, draft, lambda words: line.step(f"writing {out}: {words}"))
     elif asked.hz is None:
-        progress.tell(f"writing {out}")
-        folder.write_folder(selection, draft, asked.to, progress.step)
+        line.tell(f"writing {out}")
+        folder.write_folder(selection, draft, asked.to, lambda words: line.step(f"writing {out}: {words}"))
     elif out.name.endswith(f".{folder.COLUMNS}.csv"):
         folder.save(folder.described(selection, in_one=True), draft, "csv")
     else:
-        progress.tell(f"writing {out}")
+        line.tell(f"writing {out}")
         folder.write_wide(selection, draft, asked.hz, asked.to)
 
 
 def _size(out: Path) -> int:
     files = [out] if out.is_file() else out.iterdir()
     return sum(file.stat().st_size for file in files)
-
-
-class Progress:
-    """Tells how it is going: on a terminal one line that changes, else a line for what is begun.
-
-    Args:
-        out: Where to.
-    """
-
-    def __init__(self, out: TextIO) -> None:
-        self._out = out
-        self._live = out.isatty()
-        self._begun = ""
-
-    def tell(self, words: str) -> None:
-        """Tell what is begun."""
-        self._begun = f"{words}: "
-        self._out.write(f"\r\x1b[K{words}" if self._live else f"{words}\n")
-        self._out.flush()
-
-    def step(self, words: str) -> None:
-        """Tell how far it is."""
-        if self._live:
-            self._out.write(f"\r\x1b[K{self._begun}{words}")
-            self._out.flush()
-
-    def close(self) -> None:
-        """End the changing line."""
-        if self._live:
-            self._out.write("\r\x1b[K")
-            self._out.flush()

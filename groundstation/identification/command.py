@@ -6,7 +6,6 @@ import argparse
 import json
 import sys
 from pathlib import Path
-from typing import TextIO
 
 import numpy as np
 from msgspec.structs import astuple
@@ -20,6 +19,7 @@ from groundstation.identification.response import LONGEST_DELAY_S
 from groundstation.identification.samples import Samples, on_grid, step_of
 from groundstation.identification.sources import read_flight
 from groundstation.identification.validate import validated
+from groundstation.status_line import StatusLine
 
 
 def run(asked: argparse.Namespace) -> int:
@@ -29,16 +29,13 @@ def run(asked: argparse.Namespace) -> int:
         InputError: A flight cannot be used, or a file not be written.
     """
     _check(asked)
-    progress = _Progress(sys.stderr)
-    try:
-        found = _found(asked, progress)
+    with StatusLine(sys.stderr) as line:
+        found = _found(asked, line)
         if asked.out:
             preset.write(asked.out, asked.name or asked.out.stem, asked.like, found)
         if asked.report:
-            progress.tell("drawing")
+            line.tell("drawing")
             _write_report(asked.report, found)
-    finally:
-        progress.close()
     print(json.dumps(words.as_json(found), allow_nan=False) if asked.json else words.table(found))
     if asked.out:
         print(f"{asked.out}: fly it with --sim --model dynamic --airframe {asked.out}", file=sys.stderr)
@@ -65,32 +62,32 @@ def _check(asked: argparse.Namespace) -> None:
     preset.like(asked.like)
 
 
-def _found(asked: argparse.Namespace, progress: _Progress) -> Findings:
+def _found(asked: argparse.Namespace, line: StatusLine) -> Findings:
     """Return all that the flights say."""
     compared = preset.chi_of(asked.compare) if asked.compare else None
-    learned, unseen = _read([*asked.flights, *asked.validate], len(asked.flights), progress)
+    learned, unseen = _read([*asked.flights, *asked.validate], len(asked.flights), line)
     longest = 0.0 if asked.no_delay else LONGEST_DELAY_S
-    identified = identify(learned, progress.tell, longest)
+    identified = identify(learned, line.tell, longest)
     flights = [*learned, *unseen]
-    progress.tell("validating")
+    line.tell("validating")
     of = identified.parameters
     validations = [validated(of.chi, of.delays, flight) for flight in flights]
     others = None
     if compared is not None:
         chi = np.array(astuple(compared))
         others = [validated(chi, np.zeros(3), flight) for flight in flights]
-    matrix = each_on_each(learned, longest, progress.tell) if len(learned) > 1 else None
+    matrix = each_on_each(learned, longest, line.tell) if len(learned) > 1 else None
     return Findings(identified, learned, flights, validations, matrix, asked.compare, compared, others)
 
 
-def _read(paths: list[Path], learned: int, progress: _Progress) -> tuple[list[Samples], list[Samples]]:
+def _read(paths: list[Path], learned: int, line: StatusLine) -> tuple[list[Samples], list[Samples]]:
     """Return the flights to learn from and the others, on the first one's step."""
     raws = []
     for path in paths:
-        progress.tell(f"reading {path.name}")
+        line.tell(f"reading {path.name}")
         raw = read_flight(path)
         if raw.damaged:
-            progress.note(f"{path}: is damaged; what could be read is used.")
+            line.note(f"{path}: is damaged; what could be read is used.")
         raws.append((path.name, raw))
     steps = [step_of(name, raw) for name, raw in raws]
     flights = [on_grid(name, raw, steps[0]) for name, raw in raws]
@@ -105,31 +102,3 @@ def _write_report(path: Path, found: Findings) -> None:
         path.write_text(page(report_on(found)), encoding="utf-8")
     except OSError as error:
         raise InputError(f"--report {path}: cannot be written ({error.strerror}); choose another.") from error
-
-
-class _Progress:
-    """Tells what is being done: on a terminal one line that changes, else a line a step.
-
-    Args:
-        out: Where to.
-    """
-
-    def __init__(self, out: TextIO) -> None:
-        self._out = out
-        self._live = out.isatty()
-
-    def tell(self, step: str) -> None:
-        """Tell what is begun."""
-        self._out.write(f"\r\x1b[K{step}" if self._live else f"{step}\n")
-        self._out.flush()
-
-    def note(self, words: str) -> None:
-        """Say something that stays."""
-        self.close()
-        self._out.write(f"{words}\n")
-
-    def close(self) -> None:
-        """End the changing line."""
-        if self._live:
-            self._out.write("\r\x1b[K")
-            self._out.flush()

@@ -84,11 +84,6 @@ class Multisine(NamedTuple):
         way, velocity, acceleration, jerk = (float(peak) / between for peak in found)
         return Peaks(way, velocity, acceleration, jerk)
 
-    def crest(self) -> float:
-        """Return the velocity's peak by its root mean square."""
-        rms = math.sqrt(0.5 * float(np.square(self.amplitudes * math.tau * self.frequencies).sum()))
-        return self.peaks().velocity / rms
-
 
 def lines_within(low: float, high: float, period: float) -> range:
     """Return the multiples of 1 / period, s, that lie within a band, Hz."""

@@ -7,7 +7,7 @@ import datetime
 import json
 import sys
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import ExitStack
 from pathlib import Path
 from typing import NamedTuple
@@ -16,25 +16,25 @@ from groundstation.config import Settings
 from groundstation.errors import InputError
 from groundstation.evaluation.flight import VirtualFlight
 from groundstation.evaluation.remote_site import TakeOffError
-from groundstation.evaluation.sample import Observer, Sample
+from groundstation.evaluation.sample import Observer
 from groundstation.messages import Severity
 from groundstation.pilot.chooser import beginning
 from groundstation.pilot.guest import load_controller
 from groundstation.recording.session import Session
 from groundstation.replay.changes import channel_for, mission_for, settings_for
 from groundstation.replay.figures import Row, fingerprint, rows
-from groundstation.replay.flying import Pace, Replay, What
+from groundstation.replay.flying import NotCoupledError, Pace, Replay, What
 from groundstation.replay.records import ReplayRecorder
 from groundstation.review.choosing import chosen
 from groundstation.review.flight import Flight
 from groundstation.review.recorded_series import recorded_series
 from groundstation.run import Run
 from groundstation.run_folder import new_run_id
+from groundstation.status_line import StatusLine
 from groundstation.training.mission import Mission
 
 EXIT_FAILED = 1
 _SLOWEST, _FASTEST = 1.0, 100.0
-_TELL_EVERY_S = 0.2
 
 
 class Result(NamedTuple):
@@ -74,15 +74,17 @@ def run(asked: argparse.Namespace) -> int:
         session = _session(asked, flight, settings, mission) if asked.out or asked.rerun else None
         if session:
             ending.callback(session.close)
-        ending.callback(_clear)
+        line = ending.enter_context(StatusLine(sys.stderr))
         try:
             replay = Replay(
-                flight, what, lambda virtual: _observers(asked, virtual, settings, session, ending)
+                flight,
+                what,
+                lambda virtual: [_shown(line), *_observers(asked, virtual, settings, session, ending)],
             )
-        except TakeOffError as error:
-            sys.stderr.write(f"groundstation: {error}\n")
+            replayed = replay.fly()
+        except (TakeOffError, NotCoupledError) as error:
+            line.note(f"groundstation: {error}")
             return EXIT_FAILED
-        replayed = replay.fly()
         took = time.monotonic() - began
     recorded = recorded_series(flight)
     assert recorded is not None
@@ -126,34 +128,19 @@ def _observers(
     settings: Settings,
     session: Session | None,
     ending: ExitStack,
-) -> tuple[Observer, ...]:
-    observers: list[Observer] = [_Progress()] if sys.stderr.isatty() else []
+) -> Iterator[Observer]:
+    """Yield who sees the replay, in the order of what they do."""
     if session:
         recorder = ReplayRecorder(session, virtual.local.pilot, beginning(settings).choices)
         ending.callback(recorder.flush)
-        observers.append(recorder)
+        yield recorder
     if asked.speed:
-        observers.append(Pace(asked.speed))
-    return tuple(observers)
+        yield Pace(asked.speed)
 
 
-class _Progress:
-    """Tells on a terminal, in one line that changes, how far it is."""
-
-    def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
-        self._clock, self._next = clock, 0.0
-
-    def __call__(self, sample: Sample) -> None:
-        if (now := self._clock()) >= self._next:
-            self._next = now + _TELL_EVERY_S
-            sys.stderr.write(f"\r\x1b[K{sample.t:.1f} s, {sample.phase.name.lower()}")
-            sys.stderr.flush()
-
-
-def _clear() -> None:
-    if sys.stderr.isatty():
-        sys.stderr.write("\r\x1b[K")
-        sys.stderr.flush()
+def _shown(line: StatusLine) -> Observer:
+    """Return who tells how far it is."""
+    return lambda sample: line.step(f"{sample.t:.1f} s, {sample.phase.name.lower()}")
 
 
 def _tell(asked: argparse.Namespace, found: Sequence[Row], result: Result) -> None:

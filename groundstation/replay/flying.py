@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 from groundstation.config import Settings
@@ -45,6 +45,10 @@ class What(NamedTuple):
     seed: int
 
 
+class NotCoupledError(Exception):
+    """The hand could not be coupled in the replay; the message says why."""
+
+
 class Replay:
     """A recorded hand on the handle of a virtual flight that is in the air, about to be coupled.
 
@@ -59,11 +63,11 @@ class Replay:
     """
 
     def __init__(
-        self, flight: Flight, what: What, observers: Callable[[VirtualFlight], tuple[Observer, ...]]
+        self, flight: Flight, what: What, observers: Callable[[VirtualFlight], Sequence[Observer]]
     ) -> None:
         self._hand = recorded_hand(flight, handle_at(_RATE_HZ).workspace)
         heading = what.settings.mapping.frame == "heading"
-        self._others: tuple[Observer, ...] = ()
+        self._others: Sequence[Observer] = ()
         setup = Setup(
             scenario_of(what.mission, what.mission.wind),
             what.mission.takeoff_altitude_m,
@@ -96,8 +100,14 @@ class Replay:
         return len(self._flight.vehicle.collisions)
 
     def fly(self) -> FlightSeries:
-        """Fly to the end of the recorded hand and return what was flown."""
+        """Fly to the end of the recorded hand and return what was flown.
+
+        Raises:
+            NotCoupledError: The hand never came to be coupled.
+        """
         self._flight.fly(self._hand.seconds + _COUPLING_S, lambda: self._hand.done)
+        if not self._recorder.coupled:
+            raise NotCoupledError("over this channel the hand is never coupled; choose a better --channel.")
         return self._recorder.series()
 
     def _observe(self, sample: Sample) -> None:

@@ -14,6 +14,7 @@ from groundstation.report.files import files_of, tell, write
 from groundstation.review.choosing import chosen
 from groundstation.review.flight import Flight
 from groundstation.review.listing import list_flights
+from groundstation.status_line import StatusLine
 
 
 def run(asked: argparse.Namespace) -> int:
@@ -62,13 +63,13 @@ def _class(asked: argparse.Namespace) -> int:
     files = files_of(asked.out or Path("class.html"), with_pdf=asked.pdf)
     found: list[Flown] = []
     broken: list[str] = []
-    for number, path in enumerate(paths, 1):
-        _progress(f"reading {number} of {len(paths)}: {path.name}")
-        try:
-            found.append(flown(Flight(path)))
-        except InputError as error:
-            broken.append(str(error))
-    _progress("")
+    with StatusLine(sys.stderr) as line:
+        for number, path in enumerate(paths, 1):
+            line.step(f"reading {number} of {len(paths)}: {path.name}")
+            try:
+                found.append(flown(Flight(path)))
+            except InputError as error:
+                broken.append(str(error))
     found = [each for each in found if asked.mission in (None, each.mission)]
     if not found:
         raise InputError(
@@ -81,10 +82,3 @@ def _done(report: Report, files: Sequence[Path]) -> int:
     write(report, files)
     tell(report.findings, files)
     return 0
-
-
-def _progress(words: str) -> None:
-    """Say what is being done, on a terminal in one line that changes."""
-    if sys.stderr.isatty():
-        sys.stderr.write(f"\r\x1b[K{words}")
-        sys.stderr.flush()

@@ -19,7 +19,6 @@ class Entry:
         started: When the flight was started, or, of a recording that did not end properly, last written.
         size: Bytes.
         mission: The mission's name; "" for none or not known.
-        duration: s; None where only reading the whole file would tell.
         whole: It ended properly.
     """
 
@@ -27,7 +26,6 @@ class Entry:
     started: datetime.datetime
     size: int
     mission: str
-    duration: float | None
     whole: bool
 
 
@@ -53,11 +51,8 @@ def _entry(path: Path) -> Entry | None:
         return None
     written = datetime.datetime.fromtimestamp(status.st_mtime).astimezone()
     if not is_whole(reader):
-        return Entry(path, written, status.st_size, "", None, whole=False)
+        return Entry(path, written, status.st_size, "", whole=False)
     store = reader.store()
     flight = properties_of(store.stream().filter(content=f"/__properties/{schema.FLIGHT}").to_chunks())
-    beats = store.stream().filter(content=schema.heartbeat("recorder").path, is_static=False).to_chunks()
-    ends = [chunk.to_record_batch().column(schema.TIMELINE).cast("int64").to_pylist() for chunk in beats]
-    duration = max((end * 1e-9 for times in ends for end in times), default=None)
     started = datetime.datetime.fromisoformat(flight["started"]) if "started" in flight else written
-    return Entry(path, started, status.st_size, str(flight.get("mission", "")), duration, whole=True)
+    return Entry(path, started, status.st_size, str(flight.get("mission", "")), whole=True)

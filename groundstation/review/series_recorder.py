@@ -32,6 +32,11 @@ class SeriesRecorder:
         if sample.phase is Phase.ENGAGED:
             self._samples.append(sample)
 
+    @property
+    def coupled(self) -> bool:
+        """Whether the hand was coupled so far."""
+        return bool(self._samples)
+
     def series(self) -> FlightSeries:
         """Return what was flown so far; the hand must have been coupled."""
         samples = self._samples

@@ -9,6 +9,7 @@ from pathlib import Path
 
 from groundstation.review.listing import Entry, list_flights
 from groundstation.review.results import Result, results_of
+from groundstation.status_line import StatusLine
 
 _HEADS = ("", "started", "length", "size", "mission", "pilot", "vehicle", "score", "result", "file")
 _LONGEST = 44
@@ -26,8 +27,8 @@ def list_all(
         as_json: For programs.
     """
     entries = list_flights(folder)
-    numbered = list(enumerate(results_of(entries, folder, _tell), 1))
-    _tell("")
+    with StatusLine(sys.stderr) as line:
+        numbered = list(enumerate(results_of(entries, folder, line.step), 1))
     chosen = [
         (number, entry, result)
         for number, (entry, result) in numbered
@@ -83,10 +84,3 @@ def _fields(number: int, entry: Entry, result: Result) -> dict[str, object]:
         "ended_properly": entry.whole,
         "file": str(entry.path),
     }
-
-
-def _tell(words: str) -> None:
-    """Say what is being done, on a terminal in one line that changes."""
-    if sys.stderr.isatty():
-        sys.stderr.write(f"\r\x1b[K{words}")
-        sys.stderr.flush()

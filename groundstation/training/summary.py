@@ -11,9 +11,8 @@ from typing import TextIO
 from groundstation.console import Snapshot
 from groundstation.messages import Event, ServoReport, Severity
 from groundstation.run import Run
+from groundstation.status_line import StatusLine
 from groundstation.training.director import Director
-
-_EVERY_S = 0.2
 
 
 class Narrator:
@@ -24,10 +23,8 @@ class Narrator:
     """
 
     def __init__(self, out: TextIO) -> None:
-        self._out = out
-        self._live = out.isatty()
+        self._line = StatusLine(out)
         self._last = ""
-        self._next = 0.0
         self._told_t = time.monotonic()
 
     def tell(self, step: str, figures: str, view: Snapshot) -> None:
@@ -36,24 +33,15 @@ class Narrator:
             if event.t > self._told_t:
                 self._told_t = event.t
                 if event.severity != Severity.INFO:
-                    self._line(_words(event))
-        if self._live and view.t >= self._next:
-            self._next = view.t + _EVERY_S
-            self._out.write(f"\r\x1b[K{step}: {figures}")
-            self._out.flush()
-        elif not self._live and step != self._last:
-            self._line(step)
+                    self._line.note(_words(event))
+        if not self._line.live and step != self._last:
+            self._line.tell(step)
+        self._line.step(f"{step}: {figures}")
         self._last = step
 
     def close(self) -> None:
         """End the changing line."""
-        if self._live:
-            self._out.write("\r\x1b[K")
-            self._out.flush()
-
-    def _line(self, text: str) -> None:
-        self._out.write(f"\r\x1b[K{text}\n" if self._live else f"{text}\n")
-        self._out.flush()
+        self._line.close()
 
 
 def summary(run: Run, director: Director, servo: ServoReport | None, failure: str) -> dict[str, object]:

@@ -221,6 +221,20 @@ class Rates(Struct, frozen=True, forbid_unknown_fields=True):
     screen: Annotated[float, Meta(ge=1, le=60)] = 30.0
 
 
+class Recording(Struct, frozen=True, forbid_unknown_fields=True):
+    """How much recordings may take.
+
+    Attributes:
+        part_mb: A flight that has grown so large goes on in a next file, `NAME.part-2.rrd` and so on, MB.
+        folder_gb: When all flights in the log folder take more as one begins, the oldest go, GB; 0 for never.
+        warn_gb: Less left on the disk is told, GB.
+    """
+
+    part_mb: Annotated[float, Meta(ge=1, le=100_000)] = 512.0
+    folder_gb: Annotated[float, Meta(ge=0)] = 0.0
+    warn_gb: Annotated[float, Meta(ge=0)] = 1.0
+
+
 class Settings(Struct, frozen=True, forbid_unknown_fields=True):
     """All settings of the program.
 
@@ -237,6 +251,7 @@ class Settings(Struct, frozen=True, forbid_unknown_fields=True):
     link: Link = Link()
     safety: Safety = Safety()
     rates: Rates = Rates()
+    recording: Recording = Recording()
     devices: dict[str, dict[str, Any]] = {}
 
 

@@ -18,9 +18,10 @@ from groundstation.errors import InputError
 from groundstation.messages import PILOT_STATE, VEHICLE_STATE, VEHICLE_STATUS, Severity
 from groundstation.recording import entities, schema
 from groundstation.recording.live import free_tcp_port, listening
+from groundstation.recording.parts import is_growing
 from groundstation.recording.program import LOOPBACK, program
 from groundstation.review.flight import Flight
-from groundstation.review.rrd import is_growing, is_whole, open_reader
+from groundstation.review.rrd import is_whole, open_reader
 
 pytestmark = pytest.mark.flight
 

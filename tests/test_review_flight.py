@@ -26,12 +26,13 @@ from groundstation.messages import (
 )
 from groundstation.recording import lanes, schema
 from groundstation.recording.batch import Batch
+from groundstation.recording.parts import is_growing
 from groundstation.recording.session import Session
 from groundstation.review.choosing import chosen
 from groundstation.review.earlier import settings_from
 from groundstation.review.flight import Flight
 from groundstation.review.listing import list_flights
-from groundstation.review.rrd import is_growing, is_whole, mend, open_reader
+from groundstation.review.rrd import is_whole, mend, open_reader
 from groundstation.review.show import review
 from groundstation.review.table import list_all
 

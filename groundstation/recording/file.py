@@ -68,6 +68,11 @@ class FlightFile:
             raise RecordingError(self._failure)
         send(self._stream, items)
 
+    @property
+    def size(self) -> int:
+        """Bytes that it has grown to."""
+        return os.fstat(self._fd).st_size
+
     def close(self) -> bool:
         """Write out what is left, end the file, and put it in order; return False where that took too long.
 

@@ -15,6 +15,7 @@ from groundstation.child import Lifeline, run_child
 from groundstation.clock import Every, Pacer
 from groundstation.messages import Severity
 from groundstation.recording.batch import Taps
+from groundstation.recording.room import make_room
 from groundstation.run import Run
 
 ROLE = "recorder"
@@ -36,6 +37,9 @@ def record(run: Run, bus: Bus, lifeline: Lifeline) -> None:
         opening.join(_TURN_S)
     from groundstation.recording.session import Session, start_of
 
+    if removed := make_room(run.recording.parent, run.settings.recording.folder_gb, run.recording.stem):
+        words = f"{removed[0]} to {removed[-1]}" if len(removed) > 1 else removed[0]
+        bus.event(Severity.INFO, f"Removed the oldest flights, {words}: over recording.folder_gb.")
     start = start_of(run.started, datetime.datetime.now().astimezone(), time.monotonic())
     session = Session(run, start, bus.event)
     batch = Every(_LIVE_BATCH_S if run.viewer_url else _BATCH_S)

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import datetime
+import threading
 from collections.abc import Callable, Iterator
+from pathlib import Path
 
 from groundstation.messages import DEVICE_REPORT, Severity
 from groundstation.recording.about import about_device, about_flight
@@ -16,6 +18,8 @@ from groundstation.recording.feed import LiveFeed
 from groundstation.recording.file import FlightFile, RecordingError
 from groundstation.recording.item import Item
 from groundstation.recording.motion import Motion
+from groundstation.recording.parts import part_path
+from groundstation.recording.room import left_gb
 from groundstation.recording.scene import static_scene
 from groundstation.recording.style import static_styles
 from groundstation.run import Run
@@ -23,6 +27,7 @@ from groundstation.run import Run
 Tell = Callable[[Severity, str], None]
 
 _LONGEST_START_S = 60.0
+_MB = 1e6
 
 
 def start_of(started: str, wall: datetime.datetime, monotonic: float) -> float:
@@ -77,57 +82,95 @@ class Translator:
 
 
 class Session:
-    """Where the items go.
+    """Where the items go: files, part after part, and perhaps a live view.
 
     Args:
         run: The run.
         start: Monotonic time that is 0 on the timeline, s.
         tell: Makes an event of what people must know.
-        to_file: Into a file, not only the live view.
+        to_file: Into files, not only the live view.
     """
 
     def __init__(self, run: Run, start: float, tell: Tell, *, to_file: bool = True) -> None:
+        self._run = run
+        self._limits = run.settings.recording
         self._translator = Translator(run, start)
         self._tell = tell
-        layout = blueprint(run.mission)
+        self._layout = blueprint(run.mission)
         self._file: FlightFile | None = None
-        try:
-            self._file = FlightFile(run.recording, run.run_id, layout) if to_file else None
-        except RecordingError as error:
-            tell(Severity.ALARM, str(error))
-        self._feed = LiveFeed(run.viewer_url, run.run_id, layout) if run.viewer_url else None
-        self._slow_viewer = False
+        self._parts = 1
+        self._ending: list[threading.Thread] = []
+        if to_file:
+            self._open(run.recording)
+        self._first = self._file.path if self._file else run.recording
+        self._feed = LiveFeed(run.viewer_url, run.run_id, self._layout) if run.viewer_url else None
+        self._slow_viewer = self._told_full = False
         self._spread(list(self._translator.opening()))
 
     def take(self, batch: Batch) -> None:
         """Record a batch."""
         if self._file or self._feed:
             self._spread(list(self._translator.items(batch)))
+        if self._file:
+            self._watch(self._file)
 
     def close(self) -> None:
-        """End the file and the live view."""
+        """End the files and the live view."""
         if self._feed:
             self._feed.close()
-        if self._file is None:
-            return
+        if self._file:
+            self._end(self._file)
+        for thread in self._ending:
+            thread.join()
+
+    def _open(self, path: Path) -> None:
         try:
-            if not self._file.close():
+            self._file = FlightFile(path, self._run.run_id, self._layout)
+        except RecordingError as error:
+            self._file = None
+            self._tell(Severity.ALARM, str(error))
+
+    def _watch(self, file: FlightFile) -> None:
+        """Go on in a next part where this one is large; say once that the disk gets full."""
+        if file.size > self._limits.part_mb * _MB:
+            # To put a part in order takes seconds: beside the loop that reads the bus.
+            thread = threading.Thread(target=self._end, args=(file,), name="part")
+            self._ending.append(thread)
+            thread.start()
+            self._parts += 1
+            self._open(part_path(self._first, self._parts))
+            self._write(list(self._translator.opening()))
+        left = left_gb(file.path.parent)
+        if left < self._limits.warn_gb and not self._told_full:
+            self._told_full = True
+            self._tell(
+                Severity.WARNING,
+                f"The disk of {file.path.parent} has {left:.1f} GB left; make room after this flight.",
+            )
+
+    def _end(self, file: FlightFile) -> None:
+        """End a file and put it in order."""
+        try:
+            if not file.close():
                 self._tell(
                     Severity.INFO,
-                    f"{self._file.path} is complete; making it smaller took too long and was left out.",
+                    f"{file.path} is complete; making it smaller took too long and was left out.",
                 )
         except RecordingError as error:
             self._tell(Severity.ALARM, str(error))
 
     def _spread(self, items: list[Item]) -> None:
+        self._write(items)
+        if self._feed and not self._feed.offer(items) and not self._slow_viewer:
+            self._slow_viewer = True
+            self._tell(
+                Severity.WARNING, "The live viewer does not keep up and misses data; the recording does not."
+            )
+
+    def _write(self, items: list[Item]) -> None:
         if self._file:
             try:
                 self._file.write(items)
             except RecordingError as error:
                 self._tell(Severity.ALARM, str(error))
                 self._file = None
-        if self._feed and not self._feed.offer(items) and not self._slow_viewer:
-            self._slow_viewer = True
-            self._tell(
-                Severity.WARNING, "The live viewer does not keep up and misses data; the recording does not."
-            )

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from groundstation.errors import InputError
 from groundstation.recording import schema
+from groundstation.recording.parts import is_part, parts_of
 
 
 @dataclass(frozen=True, slots=True)
@@ -17,7 +18,7 @@ class Entry:
     Attributes:
         path: The recording.
         started: When the flight was started, or, of a recording that did not end properly, last written.
-        size: Bytes.
+        size: Bytes, of all parts.
         mission: The mission's name; "" for none or not known.
         whole: It ended properly.
     """
@@ -35,9 +36,13 @@ def list_flights(folder: Path) -> list[Entry]:
     Args:
         folder: Where to look; one that is not there has no flights.
     """
-    paths = [path for path in folder.glob("*.rrd") if not path.name.startswith(".") and path.is_file()]
+    paths = [path for path in folder.glob("*.rrd") if _is_first(path)]
     entries = [entry for path in paths if (entry := _entry(path))]
     return sorted(entries, key=lambda entry: entry.started, reverse=True)
+
+
+def _is_first(path: Path) -> bool:
+    return not path.name.startswith(".") and not is_part(path) and path.is_file()
 
 
 def _entry(path: Path) -> Entry | None:
@@ -47,12 +52,13 @@ def _entry(path: Path) -> Entry | None:
     try:
         reader = open_reader(path)
         status = path.stat()
+        size = sum(part.stat().st_size for part in parts_of(path))
     except (InputError, OSError):
         return None
     written = datetime.datetime.fromtimestamp(status.st_mtime).astimezone()
     if not is_whole(reader):
-        return Entry(path, written, status.st_size, "", whole=False)
+        return Entry(path, written, size, "", whole=False)
     store = reader.store()
     flight = properties_of(store.stream().filter(content=f"/__properties/{schema.FLIGHT}").to_chunks())
     started = datetime.datetime.fromisoformat(flight["started"]) if "started" in flight else written
-    return Entry(path, started, status.st_size, str(flight.get("mission", "")), whole=True)
+    return Entry(path, started, size, str(flight.get("mission", "")), whole=True)

@@ -10,6 +10,7 @@ import msgspec
 from msgspec import Struct
 
 from groundstation.errors import InputError
+from groundstation.recording.parts import parts_of
 from groundstation.review.listing import Entry
 
 # Safe to delete: it is made anew.
@@ -54,11 +55,11 @@ def results_of(
     """
     kept, new = _load(folder / CACHE), False
     for entry in entries:
-        status = entry.path.stat()
+        changed_ns = max(part.stat().st_mtime_ns for part in parts_of(entry.path))
         known = kept.get(entry.path.name)
-        if known is None or (known.size, known.changed_ns) != (status.st_size, status.st_mtime_ns):
+        if known is None or (known.size, known.changed_ns) != (entry.size, changed_ns):
             tell(f"reading {entry.path.name}")
-            known = _Kept(status.st_size, status.st_mtime_ns, _read(entry.path))
+            known = _Kept(entry.size, changed_ns, _read(entry.path))
             kept[entry.path.name] = known
             new = True
         yield entry, known.result

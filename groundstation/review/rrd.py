@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import fcntl
-import os
+import contextlib
 import shutil
 import tempfile
 import warnings
@@ -12,6 +11,7 @@ from pathlib import Path
 from rerun.chunk import Chunk, RrdReader
 
 from groundstation.errors import InputError
+from groundstation.recording.parts import parts_of
 from groundstation.recording.program import optimise
 
 
@@ -43,20 +43,6 @@ def is_whole(reader: RrdReader) -> bool:
     return True
 
 
-def is_growing(path: Path) -> bool:
-    """Say whether a recorder is writing the file now: it holds the file's lock."""
-    fd = os.open(path, os.O_RDONLY)
-    try:
-        fcntl.flock(fd, fcntl.LOCK_SH | fcntl.LOCK_NB)
-    except BlockingIOError:
-        return True
-    except OSError:
-        return False
-    finally:
-        os.close(fd)
-    return False
-
-
 def mend(path: Path) -> None:
     """Put a recording in order, in place, that ended without an index or in the middle of a row.
 
@@ -68,11 +54,20 @@ def mend(path: Path) -> None:
 
 
 def read_chunks(path: Path) -> list[Chunk]:
-    """Return all of a recording, whole or not; the file stays as it is.
+    """Return all of a recording with its later parts, whole or not; the files stay as they are.
 
     Raises:
-        InputError: It cannot be read.
+        InputError: It cannot be read. A later part that cannot is left out.
     """
+    first, *later = parts_of(path)
+    chunks = _chunks(first)
+    for part in later:
+        with contextlib.suppress(InputError):
+            chunks += _chunks(part)
+    return chunks
+
+
+def _chunks(path: Path) -> list[Chunk]:
     reader = open_reader(path)
     try:
         return (reader.store() if is_whole(reader) else reader).stream().to_chunks()

@@ -12,6 +12,7 @@ from pathlib import Path
 
 from groundstation.errors import InputError
 from groundstation.recording.live import free_tcp_port, has_display, page_address
+from groundstation.recording.parts import is_growing, parts_of
 from groundstation.recording.program import ENVIRONMENT, LOOPBACK, program
 from groundstation.review.choosing import chosen
 from groundstation.review.table import list_all
@@ -85,7 +86,9 @@ def review(
     Raises:
         InputError: There is no such recording, or no way to show it.
     """
-    _put_in_order(log)
+    parts = parts_of(log)
+    for part in parts:
+        _put_in_order(part)
     if not web and not has_display(environment):
         raise InputError("there is no display to open the viewer on; look in a browser with --web.")
     port = free_tcp_port()
@@ -95,11 +98,11 @@ def review(
         command += ["--serve-web", "--web-viewer-port", str(page_port)]
         page = page_address(page_port, f"rerun+http://127.0.0.1:{port}/proxy")
         sys.stderr.write(f"{log.name} is at {page}\nCtrl-C ends.\n")
-    return (spawn or _run)([*command, str(log.resolve())])
+    return (spawn or _run)([*command, *(str(part.resolve()) for part in parts)])
 
 
 def _put_in_order(log: Path) -> None:
-    from groundstation.review.rrd import is_growing, is_whole, mend, open_reader
+    from groundstation.review.rrd import is_whole, mend, open_reader
 
     if is_whole(open_reader(log)):
         return

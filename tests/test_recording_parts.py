@@ -77,6 +77,18 @@ def test_parts_are_one_flight_in_the_list_and_in_the_viewer(long_flight):
     assert commands[0][-len(parts) :] == [str(part) for part in parts]
 
 
+def test_a_flight_whose_last_part_was_cut_off_did_not_end_properly(long_flight, tmp_path):
+    path, _ = long_flight
+    for part in parts_of(path):
+        shutil.copy(part, tmp_path)
+    last = parts_of(tmp_path / "long.rrd")[-1]
+    assert list_flights(tmp_path)[0].whole
+    last.write_bytes(last.read_bytes()[: -last.stat().st_size // 4])
+    assert not list_flights(tmp_path)[0].whole
+    last.write_bytes(b"spoilt")
+    assert not list_flights(tmp_path)[0].whole
+
+
 def test_a_part_that_cannot_be_read_costs_only_itself(long_flight, tmp_path):
     path, _ = long_flight
     for part in parts_of(path):

@@ -52,7 +52,8 @@ def _entry(path: Path) -> Entry | None:
     try:
         reader = open_reader(path)
         status = path.stat()
-        size = sum(part.stat().st_size for part in parts_of(path))
+        _, *later = parts_of(path)
+        size = status.st_size + sum(part.stat().st_size for part in later)
     except (InputError, OSError):
         return None
     written = datetime.datetime.fromtimestamp(status.st_mtime).astimezone()
@@ -61,4 +62,13 @@ def _entry(path: Path) -> Entry | None:
     store = reader.store()
     flight = properties_of(store.stream().filter(content=f"/__properties/{schema.FLIGHT}").to_chunks())
     started = datetime.datetime.fromisoformat(flight["started"]) if "started" in flight else written
-    return Entry(path, started, size, str(flight.get("mission", "")), whole=True)
+    return Entry(path, started, size, str(flight.get("mission", "")), whole=all(map(_ended, later)))
+
+
+def _ended(part: Path) -> bool:
+    from groundstation.review.rrd import is_whole, open_reader
+
+    try:
+        return is_whole(open_reader(part))
+    except InputError:
+        return False

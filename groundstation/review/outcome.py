@@ -47,7 +47,8 @@ def outcome_of(flight: Flight) -> Outcome:
     if director.stage is Stage.WAITING:
         return Outcome(None, "did not take off", figures=figures)
     if mission.target is None:
-        return Outcome(None, director.stage.value, figures=figures)
+        words = "landed" if director.stage is Stage.DONE else "in the air at the end of the recording"
+        return Outcome(None, words, figures=figures)
     shortcomings = tuple(director.shortcomings())
     words = "; ".join(shortcomings) or "completed"
     return Outcome(not shortcomings, words, shortcomings, score_of(mission, figures), figures)

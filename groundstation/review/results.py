@@ -9,6 +9,7 @@ from pathlib import Path
 import msgspec
 from msgspec import Struct
 
+from groundstation import __version__
 from groundstation.errors import InputError
 from groundstation.recording.parts import parts_of
 from groundstation.review.listing import Entry
@@ -36,10 +37,11 @@ class Result(Struct, frozen=True):
 
 
 class _Kept(Struct):
-    """By file: size and time of change when it was read, and what it came to."""
+    """By file: size and time of change when it was read, by which version, and what it came to."""
 
     size: int
     changed_ns: int
+    version: str
     result: Result
 
 
@@ -57,9 +59,13 @@ def results_of(
     for entry in entries:
         changed_ns = max(part.stat().st_mtime_ns for part in parts_of(entry.path))
         known = kept.get(entry.path.name)
-        if known is None or (known.size, known.changed_ns) != (entry.size, changed_ns):
+        if known is None or (known.size, known.changed_ns, known.version) != (
+            entry.size,
+            changed_ns,
+            __version__,
+        ):
             tell(f"reading {entry.path.name}")
-            known = _Kept(entry.size, changed_ns, _read(entry.path))
+            known = _Kept(entry.size, changed_ns, __version__, _read(entry.path))
             kept[entry.path.name] = known
             new = True
         yield entry, known.result

@@ -307,6 +307,30 @@ class VehicleState(Record):
     )
 
 
+class Attitude(Record):
+    """How the vehicle says it lies, each time it says so (`t` is the arrival), whether a position comes or not.
+
+    Attributes:
+        roll, pitch, yaw: About x forward, y left, z up, rad; yaw counter-clockwise from east.
+        rates: About the same axes of the body, rad/s.
+        boot_t: The vehicle's own clock, s.
+    """
+
+    roll: float
+    pitch: float
+    yaw: float
+    rates: ctypes.Array[_F64]
+    boot_t: float
+    _fields_ = (
+        ("t", _F64),
+        ("roll", _F64),
+        ("pitch", _F64),
+        ("yaw", _F64),
+        ("rates", _F64 * 3),
+        ("boot_t", _F64),
+    )
+
+
 class Ranges(Record):
     """What the vehicle's own distance sensors see, about 10 Hz where it has any (`t` is the arrival).
 
@@ -542,6 +566,7 @@ HANDLE = Topic("handle", Handle, depth=4096)
 SETPOINT = Topic("setpoint", Setpoint, depth=256, wakes=True)
 PILOT_STATE = Topic("pilot_state", PilotState, depth=256)
 VEHICLE_STATE = Topic("vehicle_state", VehicleState, depth=1024)
+ATTITUDE = Topic("attitude", Attitude, depth=1024)
 VEHICLE_STATUS = Topic("vehicle_status", VehicleStatus, depth=256)
 OBSTACLES = Topic("obstacles", Ranges)
 COMMAND = Topic("command", Command, history=0)

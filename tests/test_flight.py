@@ -19,12 +19,16 @@ import time
 import tty
 from pathlib import Path
 
+import numpy as np
 import pytest
 from pymavlink import mavutil
 from pymavlink.dialects.v20 import common as mavlink
 
 from bench.rig import ROOT, Hand, Program, Tap, vehicle
 from groundstation.messages import Phase
+from groundstation.recording import schema
+from groundstation.review.flight import Flight
+from groundstation.review.outcome import outcome_of
 
 pytestmark = [pytest.mark.flight, pytest.mark.timeout(180)]
 
@@ -153,7 +157,21 @@ def test_a_mission_is_flown_summed_up_and_recorded(tmp_path, mission, path_m, fo
         kinds.add(message.get_type())
     log.close()
     assert {"HEARTBEAT", "SET_POSITION_TARGET_LOCAL_NED", "LOCAL_POSITION_NED", "COMMAND_LONG"} <= kinds
-    assert Path(summary["logs"]["rrd"]).stat().st_size > 10_000
+    flight = Flight(Path(summary["logs"]["rrd"]))
+    # Every attitude at its own rate, whose yaw is that of the states; every command with its answer.
+    t, attitudes = flight.series(schema.RAW_ATTITUDE)
+    assert len(t) > 20 * summary["duration_s"]
+    assert (np.diff(attitudes[:, 3]) >= 0.0).all()
+    state_t, states = flight.series(schema.POSITION)
+    yaw = attitudes[np.searchsorted(t, state_t, side="right") - 1, 2][len(state_t) // 2]
+    assert yaw == pytest.approx(states[len(state_t) // 2, 3], abs=0.05)
+    asked, answered = (set(flight.series(each).values[:, 0]) for each in (schema.COMMANDED, schema.ANSWERED))
+    assert asked
+    assert asked == answered
+    outcome = outcome_of(flight)
+    assert outcome.completed is True
+    assert outcome.figures.final_error == pytest.approx(summary["final_error_m"], abs=0.01)
+    assert outcome.figures.path == pytest.approx(summary["path_m"], rel=0.02)
 
 
 def test_a_mission_that_fails_its_criteria_exits_1_and_says_why(tmp_path):

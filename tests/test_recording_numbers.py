@@ -15,6 +15,9 @@ from hypothesis import strategies as st
 from recording_support import a_handle, a_pilot_state, a_ranges, a_setpoint, a_status, a_vehicle_state
 
 from groundstation.messages import (
+    ATTITUDE,
+    COMMAND,
+    COMMAND_ANSWER,
     HANDLE,
     HEARTBEAT,
     MISSION_PROGRESS,
@@ -24,6 +27,10 @@ from groundstation.messages import (
     SETPOINT,
     VEHICLE_STATE,
     VEHICLE_STATUS,
+    Attitude,
+    Command,
+    CommandAnswer,
+    CommandKind,
     Heartbeat,
     MissionProgress,
     Phase,
@@ -78,6 +85,9 @@ def full_batch() -> Batch:
         (PILOT_STATE, [a_pilot_state(t)]),
         (VEHICLE_STATE, [a_vehicle_state(t)]),
         (VEHICLE_STATUS, [a_status(t)]),
+        (ATTITUDE, [Attitude(t=t, roll=0.1, pitch=0.2, yaw=0.3, rates=(0.4, 0.5, 0.6), boot_t=9.5)]),
+        (COMMAND, [Command(t=t, number=7, kind=CommandKind.PRESET, value=2, source=b"screen")]),
+        (COMMAND_ANSWER, [CommandAnswer(t=t, number=7, kind=CommandKind.PRESET, ok=1)]),
         (OBSTACLES, [a_ranges(t, at0=3.0, at18=2.0)]),
         (SERVO_REPORT, [servo]),
         (MISSION_PROGRESS, [progress]),
@@ -132,6 +142,10 @@ def test_numbers_stand_where_the_schema_says():
         schema.LEGS: [1, 4],
         schema.CLEARANCE: [math.nan],
         schema.COLLISIONS: [2],
+        schema.RAW_ATTITUDE: [0.1, 0.2, 0.3, 9.5],
+        schema.RAW_RATES: [0.4, 0.5, 0.6],
+        schema.COMMANDED: [7, CommandKind.PRESET, 2],
+        schema.ANSWERED: [7, CommandKind.PRESET, 1],
     }
     for quantity, row in expected.items():
         npt.assert_allclose(numbers(chunks[quantity.path])[0], row, atol=1e-9, err_msg=quantity.path)

@@ -7,6 +7,7 @@ from typing import Any, TypeVar, cast
 
 from groundstation.bus import Bus, Subscriber
 from groundstation.messages import (
+    ATTITUDE,
     COMMAND,
     COMMAND_ANSWER,
     DEVICE_REPORT,
@@ -31,6 +32,7 @@ TOPICS: tuple[Topic[Any], ...] = (
     SETPOINT,
     PILOT_STATE,
     VEHICLE_STATE,
+    ATTITUDE,
     VEHICLE_STATUS,
     OBSTACLES,
     COMMAND,

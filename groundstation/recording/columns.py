@@ -10,6 +10,9 @@ import numpy.typing as npt
 import rerun as rr
 
 from groundstation.messages import (
+    ATTITUDE,
+    COMMAND,
+    COMMAND_ANSWER,
     HANDLE,
     HEARTBEAT,
     MISSION_PROGRESS,
@@ -182,6 +185,15 @@ _NUMBERS: tuple[tuple[Topic[Any], tuple[tuple[Quantity, Callable[[Rows], Numbers
             (schema.COLLISIONS, _fields("collisions")),
         ),
     ),
+    (
+        ATTITUDE,
+        (
+            (schema.RAW_ATTITUDE, _fields("roll", "pitch", "yaw", "boot_t")),
+            (schema.RAW_RATES, _fields("rates")),
+        ),
+    ),
+    (COMMAND, ((schema.COMMANDED, _fields("number", "kind", "value")),)),
+    (COMMAND_ANSWER, ((schema.ANSWERED, _fields("number", "kind", "ok")),)),
 )
 
 

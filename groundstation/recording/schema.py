@@ -15,8 +15,9 @@ from groundstation.recording.entities import SCENE
 from groundstation.recording.lanes import LANES
 
 APPLICATION = "groundstation"
-# 2: what stands around equations (4) and (5), and the vehicle's own distance sensors. A reader of 2 reads 1.
-VERSION = 2
+# 3: every attitude and body rate that the vehicle tells, and commands and answers as numbers.
+# 2: what stands around equations (4) and (5), and the vehicle's own distance sensors. A reader of 3 reads 1 and 2.
+VERSION = 3
 TIMELINE = "flight_time"
 
 # Properties of the whole flight.
@@ -149,6 +150,30 @@ VELOCITY = Quantity(
     "/vehicle/velocity", _POSE, "m/s, rad/s", "telemetry", "Vehicle's velocity, world; yaw rate"
 )
 ATTITUDE = Quantity("/vehicle/attitude", ("roll", "pitch"), "rad", "telemetry", "About x forward, y left")
+RAW_ATTITUDE = Quantity(
+    "/vehicle/raw/attitude",
+    ("roll", "pitch", "yaw", "boot time"),
+    "rad, s",
+    "as told",
+    "Every attitude the vehicle tells, about x forward, y left, z up; its own clock",
+)
+RAW_RATES = Quantity(
+    "/vehicle/raw/rates", ("roll", "pitch", "yaw"), "rad/s", "as told", "Body rates about the same axes"
+)
+COMMANDED = Quantity(
+    "/operator/command",
+    ("number", "kind", "value"),
+    "code",
+    "as given",
+    "Commands: number, `CommandKind`, and what it chooses; `/events/commands` has them in words",
+)
+ANSWERED = Quantity(
+    "/operator/answer",
+    ("number", "kind", "done"),
+    "code",
+    "as given",
+    "Answers: of which command, its `CommandKind`, and 1 where it was done, 0 where refused",
+)
 BOOT_TIME = Quantity(
     "/vehicle/boot_time", ("boot time",), "s", "telemetry", "Vehicle's own clock at the state"
 )
@@ -213,12 +238,13 @@ QUANTITIES: tuple[Quantity, ...] = (
     FORCE_CUE, ENVIRONMENT_CUE, MISMATCH_CUE, GUARD_CUE, DAMPING_CUE, CUE_SIZES, CUES_ON,
     PREDICTED, PREDICTED_VELOCITY, STOP, PUSH,
     *REFERENCES, *EXECUTED,
-    POSITION, VELOCITY, ATTITUDE, BOOT_TIME, BATTERY, VOLTAGE, HEALTH_BITS,
+    POSITION, VELOCITY, ATTITUDE, RAW_ATTITUDE, RAW_RATES, BOOT_TIME, BATTERY, VOLTAGE, HEALTH_BITS,
     RING, RANGES, RANGE_LIMIT,
     STATE_AGE, HANDLE_AGE, ROUND_TRIP, RECKONED, SILENCE,
     LOSS, GATE,
     SERVO_RATE, SERVO_LATE, SERVO_TIME, SERVO_TICKS,
     TARGET_DISTANCE, CLEARANCE, LEGS, COLLISIONS,
+    COMMANDED, ANSWERED,
 )  # fmt: skip
 
 PROCESSES = "/processes"

@@ -20,6 +20,7 @@ from groundstation.child import Lifeline, run_child
 from groundstation.frames import Vector4
 from groundstation.messages import (
     ANSWER_TEXT,
+    ATTITUDE,
     COMMAND,
     COMMAND_ANSWER,
     OBSTACLES,
@@ -87,6 +88,7 @@ class Link:
         self._waker = bus.waker(SETPOINT)
         self._commands = bus.subscriber(COMMAND)
         self._states = bus.publisher(VEHICLE_STATE)
+        self._attitudes = bus.publisher(ATTITUDE)
         self._ranges = bus.publisher(OBSTACLES)
         self._statuses = bus.publisher(VEHICLE_STATUS)
         self._answers = bus.publisher(COMMAND_ANSWER)
@@ -221,6 +223,8 @@ class Link:
 
     def _pass_on_sights(self) -> None:
         """Send where the vehicle is and what it sees, as soon as it has told."""
+        while self._view.attitudes:
+            self._attitudes.send(self._view.attitudes.popleft())
         if self._view.fresh:
             self._states.send(self._view.take_state())
         if self._obstacles:

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 import queue
+from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -15,7 +16,7 @@ from mavsdk.plugins import telemetry as plugin
 from mavsdk.plugins.telemetry import Telemetry
 
 from groundstation.frames import Vector3, enu_from_ned, yaw_from_heading
-from groundstation.messages import FlightMode, Health, Severity, VehicleState
+from groundstation.messages import Attitude, FlightMode, Health, Severity, VehicleState
 
 _MODES = {
     plugin.FlightMode.READY: FlightMode.READY,
@@ -32,6 +33,8 @@ _MODES = {
 }
 # A heading is one of about the same moment as a position for so long, s.
 _ATTITUDE_S = 0.5
+# So many attitudes wait for the link, which takes them many times a second.
+_ATTITUDES = 256
 _ALARMING = plugin.StatusTextType.ERROR
 _WARNING = plugin.StatusTextType.WARNING
 
@@ -65,6 +68,7 @@ class VehicleView:
         clock: Monotonic seconds.
 
     Attributes:
+        attitudes: Those that came and were not taken yet.
         fresh: A position came since `take_state` was last called.
         mode_t: When the heartbeat came that `mode` is from, s.
     """
@@ -77,7 +81,8 @@ class VehicleView:
         self._origin = Origin()
         self._state = VehicleState()
         self._attitude_t = -math.inf
-        self._yaw_rate = 0.0
+        self._rates = (0.0, 0.0, 0.0)
+        self.attitudes: deque[Attitude] = deque(maxlen=_ATTITUDES)
         self.fresh = False
         self.mode = FlightMode.UNKNOWN
         self.mode_t = 0.0
@@ -128,17 +133,27 @@ class VehicleView:
         # FRD → FLU: forward is shared, so roll keeps its sign and pitch turns it.
         state.pitch = -math.radians(angle.pitch_deg)
         state.position[3] = yaw_from_heading(angle.yaw_deg)
-        self._attitude_t = self._clock()
+        self._attitude_t = now = self._clock()
+        self.attitudes.append(
+            Attitude(
+                t=now,
+                roll=state.roll,
+                pitch=state.pitch,
+                yaw=state.position[3],
+                rates=self._rates,
+                boot_t=boot_t,
+            )
+        )
 
     def _on_rates(self, rates: plugin.AngularVelocityBody, _: object) -> None:
-        self._yaw_rate = -rates.yaw_rad_s
+        self._rates = (rates.roll_rad_s, -rates.pitch_rad_s, -rates.yaw_rad_s)
 
     def _on_position(self, sample: plugin.PositionVelocityNed, _: object) -> None:
         now = self._clock()
         place, motion = sample.position, sample.velocity
         local = enu_from_ned((place.north_m, place.east_m, place.down_m))
         velocity = enu_from_ned((motion.north_m_s, motion.east_m_s, motion.down_m_s))
-        if not all(map(math.isfinite, (*local, *velocity, self._yaw_rate, self._state.position[3]))):
+        if not all(map(math.isfinite, (*local, *velocity, self._rates[2], self._state.position[3]))):
             self._state.valid = 0
             self._state.t = now
             self.fresh = True
@@ -146,7 +161,7 @@ class VehicleView:
         position = self._origin.world(local, armed=self.armed)
         state = self._state
         state.position[:3] = position
-        state.velocity[:] = (*velocity, self._yaw_rate)
+        state.velocity[:] = (*velocity, self._rates[2])
         # A position is worth nothing to equation (3) without a heading of about the same moment.
         state.valid = int(now - self._attitude_t < _ATTITUDE_S)
         state.t = now

@@ -56,3 +56,5 @@ class LiveFeed:
             send(self._stream, items)
         with contextlib.suppress(RuntimeError):
             self._stream.flush(timeout_sec=_END_S)
+        # Left to the end of the process it would complain of a viewer that ends first.
+        self._stream.disconnect()

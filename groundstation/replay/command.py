@@ -5,7 +5,9 @@ from __future__ import annotations
 import argparse
 import datetime
 import json
+import os
 import sys
+import threading
 import time
 from collections.abc import Iterator, Sequence
 from contextlib import ExitStack
@@ -20,6 +22,7 @@ from groundstation.evaluation.sample import Observer
 from groundstation.messages import Severity
 from groundstation.pilot.chooser import beginning
 from groundstation.pilot.guest import load_controller
+from groundstation.recording.live import has_display, start_viewer
 from groundstation.recording.session import Session
 from groundstation.replay.changes import channel_for, mission_for, settings_for
 from groundstation.replay.figures import Row, fingerprint, rows
@@ -90,6 +93,9 @@ def run(asked: argparse.Namespace) -> int:
     assert recorded is not None
     result = Result(replay.collisions, replay.seconds / max(took, 1e-9), fingerprint(replayed))
     _tell(asked, rows(recorded, replayed, mission), result)
+    if asked.rerun and sys.stdin.isatty() and not has_display(os.environ):
+        sys.stderr.write("The page is there until Ctrl-C.\n")
+        threading.Event().wait()
     return 0
 
 
@@ -97,8 +103,6 @@ def _session(asked: argparse.Namespace, flight: Flight, settings: Settings, miss
     """Return where the replay is recorded and shown."""
     url = ""
     if asked.rerun:
-        from groundstation.recording.live import start_viewer
-
         url = start_viewer()
     out = asked.out or Path(f".{flight.path.stem}.replay.rrd")
     run = Run(

@@ -247,6 +247,23 @@ QUANTITIES: tuple[Quantity, ...] = (
     COMMANDED, ANSWERED,
 )  # fmt: skip
 
+FORCE_SIZE = Quantity(
+    "/handle/force_size",
+    ("size", "limit"),
+    "N",
+    "50 Hz",
+    "Largest norm of the force on the hand in 20 ticks of the servo; what the device can render",
+)
+MARGIN = Quantity(
+    "/mission/margin",
+    ("margin",),
+    "m",
+    "mission",
+    "Least clearance that the guard keeps; NaN where it is off",
+)
+# Drawn from the others, the device and the settings, to be read beside them.
+GAUGES: tuple[Quantity, ...] = (FORCE_SIZE, MARGIN)
+
 PROCESSES = "/processes"
 # Of so many parts only the first and the last are named.
 _MANY = 10
@@ -260,7 +277,7 @@ def heartbeat(role: str) -> Quantity:
 def tables() -> str:
     """Return the schema as Markdown tables, as `docs/logs.md` shows it."""
     lines = ["| entity | parts | unit | rows | meaning |", "|---|---|---|---|---|"]
-    for quantity in (*QUANTITIES, heartbeat("ROLE")):
+    for quantity in (*QUANTITIES, *GAUGES, heartbeat("ROLE")):
         parts = _listed(quantity.parts)
         lines.append(
             f"| `{quantity.path}` | {parts} | {quantity.unit} | {quantity.rate} | {quantity.meaning} |"

@@ -16,6 +16,8 @@ from groundstation.recording.columns import Buttons, Heartbeats, number_chunks
 from groundstation.recording.echoes import Echoes
 from groundstation.recording.feed import LiveFeed
 from groundstation.recording.file import FlightFile, RecordingError
+from groundstation.recording.gauges import Gauges
+from groundstation.recording.incidents import Incidents
 from groundstation.recording.item import Item
 from groundstation.recording.motion import Motion
 from groundstation.recording.parts import part_path
@@ -58,6 +60,8 @@ class Translator:
         self._buttons = Buttons()
         self._motion = Motion(start, heading=run.settings.mapping.frame == "heading")
         self._echoes = Echoes(start)
+        self._gauges = Gauges(start, run.settings.shield)
+        self._incidents = Incidents(start)
         self._device = b""
 
     def opening(self) -> Iterator[Item]:
@@ -75,6 +79,8 @@ class Translator:
         yield from self._changes.texts(batch)
         yield from self._motion.chunks(batch)
         yield from self._echoes.chunks(batch)
+        yield from self._gauges.chunks(batch)
+        yield from self._incidents.chunks(batch)
         for report in batch.of(DEVICE_REPORT):
             if report.present and (known := report.name + report.serial) != self._device:
                 self._device = known

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from typing import Any
+from functools import cache
+from typing import Any, cast
 
 import numpy as np
 import numpy.typing as npt
@@ -36,8 +37,12 @@ Rows = npt.NDArray[np.void]
 
 def rows_of(records: Sequence[Record]) -> Rows:
     """Return records of one kind as one structured array, a row each, in one copy."""
-    kind: npt.DTypeLike = np.dtype(type(records[0]))
-    return np.frombuffer(b"".join(records), dtype=kind)
+    return np.frombuffer(b"".join(records), dtype=_kind(type(records[0])))
+
+
+@cache
+def _kind(record: type[Record]) -> np.dtype[np.void]:
+    return cast("np.dtype[np.void]", np.dtype(record))
 
 
 def vehicle_rates(world: Numbers, yaw: Numbers) -> Numbers:

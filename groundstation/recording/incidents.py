@@ -19,7 +19,7 @@ SHOWN_S = 0.5
 # Letters of an event's words that stand in the scene.
 _LABEL = 60
 _RANKS = (lanes.WARNING, lanes.ALARM, lanes.COLLISION)
-_LEVELS = {Severity.WARNING: lanes.WARNING, Severity.ALARM: lanes.ALARM}
+_LEVELS: dict[int, str] = {Severity.WARNING: lanes.WARNING, Severity.ALARM: lanes.ALARM}
 
 
 class Incident(NamedTuple):

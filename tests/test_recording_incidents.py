@@ -75,7 +75,10 @@ def test_what_follows_at_once_is_one_incident_of_the_worst_kind():
     )
     batch.add(MISSION_PROGRESS, [MissionProgress(t=START + 1.1, collisions=1)])
     chunks = list(incidents.chunks(batch))
-    assert rows(c for c in chunks if c.path == lanes.ALERT.path)[lanes.ALERT.path][0] == (1.0, lanes.COLLISION)
+    assert rows(c for c in chunks if c.path == lanes.ALERT.path)[lanes.ALERT.path][0] == (
+        1.0,
+        lanes.COLLISION,
+    )
     assert len(places(chunks)) == 1
 
 

@@ -22,7 +22,7 @@ from groundstation.evaluation.sample import Observer
 from groundstation.messages import Severity
 from groundstation.pilot.chooser import beginning
 from groundstation.pilot.guest import load_controller
-from groundstation.recording.live import has_display, start_viewer
+from groundstation.recording.live import find_viewer, has_display, start_viewer
 from groundstation.recording.session import Session
 from groundstation.replay.changes import channel_for, mission_for, settings_for
 from groundstation.replay.figures import Row, fingerprint, rows
@@ -74,7 +74,11 @@ def run(asked: argparse.Namespace) -> int:
     what = What(settings, mission, load_controller(controller, settings), channel_for(asked), seed)
     began = time.monotonic()
     with ExitStack() as ending:
-        session = _session(asked, flight, settings, mission) if asked.out or asked.rerun else None
+        session = (
+            _session(asked, flight, settings, mission)
+            if asked.out or asked.rerun or asked.viewer is not None
+            else None
+        )
         if session:
             ending.callback(session.close)
         line = ending.enter_context(StatusLine(sys.stderr))
@@ -102,7 +106,9 @@ def run(asked: argparse.Namespace) -> int:
 def _session(asked: argparse.Namespace, flight: Flight, settings: Settings, mission: Mission) -> Session:
     """Return where the replay is recorded and shown."""
     url = ""
-    if asked.rerun:
+    if asked.viewer is not None:
+        url = find_viewer(asked.viewer)
+    elif asked.rerun:
         url = start_viewer()
     out = asked.out or Path(f".{flight.path.stem}.replay.rrd")
     run = Run(

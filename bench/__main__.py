@@ -23,6 +23,7 @@ BENCHES = {
     "passivity": "energy at the haptic port with delay and loss",
     "pilot_step": "cost and memory of a tick of the pilot with everything on",
     "stability": "how well the drone follows, and whether anything swings at 0.7 s round trip",
+    "screen": "what the screen costs while it flies, and ticks the servo loses to it",
     "evaluate": "how many times as fast as real time flights are evaluated",
     "recording": "what recording costs: share of a core, MB a minute, rows lost",
     "report": "report on a flight of ten minutes, and loading it",

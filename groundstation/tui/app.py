@@ -33,7 +33,7 @@ from groundstation.tui.keepalive import Keepalive
 from groundstation.tui.notes import Answers
 from groundstation.tui.screens.dialog import Confirm, Help
 from groundstation.tui.screens.flight import FlightScreen
-from groundstation.tui.theme import THEME
+from groundstation.tui.theme import THEME, THEMES
 from groundstation.tui.track import History, Track
 
 _POLL_S = 0.1
@@ -70,7 +70,8 @@ class FlightApp(App[int]):
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
         super().__init__()
-        self.register_theme(THEME)
+        for theme in THEMES:
+            self.register_theme(theme)
         self.theme = THEME.name
         self.hand = Hand()
         self._flight_run, self._reader, self._supervisor = run, console, supervisor
@@ -114,7 +115,8 @@ class FlightApp(App[int]):
             self.notify(note.text, severity=severity, timeout=6.0, markup=False)
         stale_s = self._flight_run.settings.safety.state_stale_s
         if snapshot.vehicle is not None and snapshot.vehicle.valid:
-            self._track.add(snapshot.vehicle.position[0], snapshot.vehicle.position[1])
+            east, north, up, _ = snapshot.vehicle.position
+            self._track.add(east, north, up, snapshot.vehicle.t)
         self._history.add(snapshot, stale_s)
         self._flight.show(self._frame(snapshot))
 
@@ -130,6 +132,7 @@ class FlightApp(App[int]):
             notes=tuple(self._answers.notes),
             track=self._track,
             history=self._history,
+            figures=self._follower.director.figures if self._follower else None,
         )
 
     def _send_stick(self) -> None:

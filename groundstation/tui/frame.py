@@ -10,6 +10,7 @@ from typing import Protocol
 from groundstation.console import Snapshot
 from groundstation.messages import CommandKind, PilotState, Record
 from groundstation.run import Run
+from groundstation.training.director import Figures
 from groundstation.tui.acts import PILOT_STALE_S
 from groundstation.tui.hand import Share4
 from groundstation.tui.notes import Note
@@ -57,6 +58,7 @@ class Frame:
         hindrances: Why each act and choice cannot be made now, by name; "" where it can.
         guarded_by: What the guard keeps away from, now or a moment ago, or "".
         notes: What the screen itself has to say, oldest first.
+        figures: What the flight has come to so far, or None without a mission.
     """
 
     snapshot: Snapshot
@@ -69,6 +71,7 @@ class Frame:
     notes: Sequence[Note]
     track: Track
     history: History
+    figures: Figures | None = None
 
     @property
     def now(self) -> float:

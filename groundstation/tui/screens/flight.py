@@ -58,6 +58,10 @@ def _bindings() -> list[BindingType]:
         *choices,
         *steps,
         Binding("space,0", "centre", "Stick to the centre", show=False),
+        Binding("v,V", "view", "Next view", show=False),
+        Binding("g,G", "follow", "Follow, or whole mission", show=False),
+        Binding("plus,equals_sign", "zoom(1)", "Zoom in", show=False),
+        Binding("minus,underscore", "zoom(-1)", "Zoom out", show=False),
         Binding("question_mark,f1", "app.help", "Help", show=False),
         Binding("q,Q", "app.quit", "Quit", show=False),
     ]
@@ -79,6 +83,7 @@ class FlightScreen(Screen[None]):
         super().__init__()
         self._hand = hand
         self._stick = Stick(hand, id="stick")
+        self._map = Overview(id="map")
         self._instruments: list[Instrument] = []
         self._latest: Frame | None = None
 
@@ -90,7 +95,7 @@ class FlightScreen(Screen[None]):
         with Horizontal(id="body"):
             with Vertical(id="where"):
                 with Horizontal(id="place"):
-                    yield Overview(id="map")
+                    yield self._map
                     yield Altitude(id="altitude")
                 yield Happenings(id="events")
             with Vertical(id="hand"):
@@ -122,6 +127,18 @@ class FlightScreen(Screen[None]):
     def action_centre(self) -> None:
         """Put the on-screen stick into its centre."""
         self._stick.centre()
+
+    def action_view(self) -> None:
+        """See the flight from the next place."""
+        self._map.next_sight()
+
+    def action_follow(self) -> None:
+        """Follow the vehicle with the map, or show the whole mission."""
+        self._map.follow_or_whole()
+
+    def action_zoom(self, steps: int) -> None:
+        """Go nearer, or further away."""
+        self._map.zoom(steps)
 
     def let_go(self) -> None:
         """Let go of the on-screen stick, so that it moves the vehicle no more."""

@@ -12,6 +12,7 @@ import signal
 import sys
 import time
 from collections.abc import Callable, Iterable
+from dataclasses import replace
 from typing import ClassVar
 
 from textual.app import App, SystemCommand
@@ -24,6 +25,8 @@ from groundstation.messages import CommandKind, FlightMode, Preset, Severity
 from groundstation.run import Run
 from groundstation.training.follower import MissionFollower
 from groundstation.tui.acts import ACTS, BY_NAME, Act, Ask, coupled, in_air
+from groundstation.tui.alarms import Alarms
+from groundstation.tui.alerts import alerts
 from groundstation.tui.choices import CHOICES, CHOICES_BY_NAME, PRESETS_EXPLAINED, Choice, Wishes
 from groundstation.tui.frame import Frame, Reader, Supervisor, workspace
 from groundstation.tui.guarding import GuardWatch
@@ -33,7 +36,7 @@ from groundstation.tui.keepalive import Keepalive
 from groundstation.tui.notes import Answers
 from groundstation.tui.screens.dialog import Confirm, Help
 from groundstation.tui.screens.flight import FlightScreen
-from groundstation.tui.theme import THEME, THEMES
+from groundstation.tui.theme import THEME, THEMES, next_theme
 from groundstation.tui.track import History, Track
 
 _POLL_S = 0.1
@@ -78,7 +81,7 @@ class FlightApp(App[int]):
         self._stick, self._clock = stick, clock
         self._answers = Answers()
         self._wishes, self._guard = Wishes(), GuardWatch()
-        self._track, self._history = Track(), History()
+        self._track, self._history, self._alarms = Track(), History(), Alarms()
         self._snapshot = console.snapshot()
         self._started = self._snapshot.t
         self._next_poll = 0.0
@@ -118,7 +121,11 @@ class FlightApp(App[int]):
             east, north, up, _ = snapshot.vehicle.position
             self._track.add(east, north, up, snapshot.vehicle.t)
         self._history.add(snapshot, stale_s)
-        self._flight.show(self._frame(snapshot))
+        frame = self._frame(snapshot)
+        alarms = self._alarms.look(alerts(frame), snapshot.t)
+        if self._alarms.rings(snapshot.t):
+            self.bell()
+        self._flight.show(replace(frame, alarms=alarms, muted=self._alarms.muted))
 
     def _frame(self, snapshot: Snapshot) -> Frame:
         return Frame(
@@ -206,6 +213,20 @@ class FlightApp(App[int]):
         self.hand.centre()
         self.exit(code)
 
+    def action_acknowledge(self) -> None:
+        """Take all that is wrong as known: it is no longer reversed nor rung."""
+        if not self._alarms.acknowledge():
+            self.notify("Nothing new is wrong.", timeout=2.0)
+
+    def action_mute(self) -> None:
+        """Ring no bell, or ring it again."""
+        self._alarms.muted = not self._alarms.muted
+        self.notify(f"Bell {'off' if self._alarms.muted else 'on'}.", timeout=2.0)
+
+    def action_theme_next(self) -> None:
+        """Take the next theme: dark, light, high contrast."""
+        self.theme = next_theme(self.theme)
+
     def action_help(self) -> None:
         """Show the keys."""
         self.push_screen(Help())
@@ -240,6 +261,11 @@ class FlightApp(App[int]):
             title = f"Preset: {preset.name.lower()}"
             yield SystemCommand(title, words, lambda preset=preset: self._choose_preset(preset))
         yield SystemCommand("Centre the stick (space)", "All axes at once.", self._flight.action_centre)
+        yield SystemCommand("Seen (enter)", "Take all that is wrong as known.", self.action_acknowledge)
+        yield SystemCommand("Bell (u)", "Off, or on again.", self.action_mute)
+        yield SystemCommand("Theme (z)", "Dark, light, or high contrast.", self.action_theme_next)
+        yield SystemCommand("Next view (v)", "Map, side, chase, first person.", self._flight.action_view)
+        yield SystemCommand("Next page (tab)", "One instrument at a time, or all.", self._flight.action_page)
         yield SystemCommand("Help (?)", "All keys.", self.action_help)
         yield SystemCommand("Quit (q)", "Asks first while the vehicle is in the air.", self.action_quit)
 

@@ -12,6 +12,7 @@ from groundstation.messages import CommandKind, PilotState, Record
 from groundstation.run import Run
 from groundstation.training.director import Figures
 from groundstation.tui.acts import PILOT_STALE_S
+from groundstation.tui.alarms import Alarm
 from groundstation.tui.hand import Share4
 from groundstation.tui.notes import Note
 from groundstation.tui.track import History, Track
@@ -59,6 +60,8 @@ class Frame:
         guarded_by: What the guard keeps away from, now or a moment ago, or "".
         notes: What the screen itself has to say, oldest first.
         figures: What the flight has come to so far, or None without a mission.
+        alarms: What is wrong, the most urgent first.
+        muted: No bell is rung.
     """
 
     snapshot: Snapshot
@@ -72,6 +75,8 @@ class Frame:
     track: Track
     history: History
     figures: Figures | None = None
+    alarms: Sequence[Alarm] = ()
+    muted: bool = False
 
     @property
     def now(self) -> float:

@@ -16,9 +16,11 @@ from groundstation.config import Settings
 from groundstation.errors import InputError
 from groundstation.evaluation.flight import Setup, VirtualFlight
 from groundstation.evaluation.hands import OperatorHand
+from groundstation.evaluation.local_site import handle_at
 from groundstation.evaluation.trial import scenario_of
 from groundstation.pilot.chooser import beginning
 from groundstation.pilot.sight import ZERO4, VehicleSample
+from groundstation.recording import schema
 from groundstation.recording.session import Session
 from groundstation.replay.changes import changed
 from groundstation.replay.flying import Pace
@@ -27,7 +29,9 @@ from groundstation.replay.records import ReplayRecorder
 from groundstation.review.flight import Flight
 from groundstation.review.recorded_series import recorded_series
 from groundstation.run import Run
+from groundstation.training.director import Director
 from groundstation.training.mission import find_mission, load_mission
+from sim.environment.world import World
 from sim.operator import Operator
 
 SECONDS = 12.0
@@ -60,7 +64,9 @@ def flown(tmp_path_factory):
         lambda mapping, _: OperatorHand(operator, mapping),
         (lambda sample: [watch(sample) for watch in watchers],),
     )
-    recorder = ReplayRecorder(session, flight.local.pilot, beginning(settings).choices)
+    director = Director(mission, World(mission.obstacle), flight.vehicle.airframe.radius)
+    choices = beginning(settings).choices
+    recorder = ReplayRecorder(session, flight.local.pilot, choices, director, handle_at(1000.0))
     watchers.append(recorder)
     flight.fly(SECONDS)
     recorder.flush()
@@ -114,6 +120,8 @@ def test_it_writes_a_recording_that_reads_back(flown, tmp_path, capsys):
     series = recorded_series(Flight(out))
     assert series.t[-1] == pytest.approx(recorded_series(Flight(flown)).t[-1], abs=0.1)
     assert Flight(out).settings.control.preset == "paper"
+    assert np.isfinite(Flight(out).series(schema.CLEARANCE).values).all()
+    assert Flight(out).series(schema.FORCE_SIZE).values[-1, 1] == handle_at(1000.0).force_limit
     assert run(capsys, flown, "--out", out)[0] == 2
 
 

@@ -17,6 +17,7 @@ from typing import NamedTuple
 from groundstation.config import Settings
 from groundstation.errors import InputError
 from groundstation.evaluation.flight import VirtualFlight
+from groundstation.evaluation.local_site import handle_at
 from groundstation.evaluation.remote_site import TakeOffError
 from groundstation.evaluation.sample import Observer
 from groundstation.messages import Severity
@@ -26,7 +27,7 @@ from groundstation.recording.live import find_viewer, has_display, start_viewer
 from groundstation.recording.session import Session
 from groundstation.replay.changes import channel_for, mission_for, settings_for
 from groundstation.replay.figures import Row, fingerprint, rows
-from groundstation.replay.flying import NotCoupledError, Pace, Replay, What
+from groundstation.replay.flying import RATE_HZ, NotCoupledError, Pace, Replay, What
 from groundstation.replay.records import ReplayRecorder
 from groundstation.review.choosing import chosen
 from groundstation.review.flight import Flight
@@ -34,7 +35,9 @@ from groundstation.review.recorded_series import recorded_series
 from groundstation.run import Run
 from groundstation.run_folder import new_run_id
 from groundstation.status_line import StatusLine
+from groundstation.training.director import Director
 from groundstation.training.mission import Mission
+from sim.environment.world import World
 
 EXIT_FAILED = 1
 _SLOWEST, _FASTEST = 1.0, 100.0
@@ -86,7 +89,7 @@ def run(asked: argparse.Namespace) -> int:
             replay = Replay(
                 flight,
                 what,
-                lambda virtual: [_shown(line), *_observers(asked, virtual, settings, session, ending)],
+                lambda virtual: [_shown(line), *_observers(asked, virtual, what, session, ending)],
             )
             replayed = replay.fly()
         except (TakeOffError, NotCoupledError) as error:
@@ -135,13 +138,15 @@ def _session(asked: argparse.Namespace, flight: Flight, settings: Settings, miss
 def _observers(
     asked: argparse.Namespace,
     virtual: VirtualFlight,
-    settings: Settings,
+    what: What,
     session: Session | None,
     ending: ExitStack,
 ) -> Iterator[Observer]:
     """Yield who sees the replay, in the order of what they do."""
     if session:
-        recorder = ReplayRecorder(session, virtual.local.pilot, beginning(settings).choices)
+        director = Director(what.mission, World(what.mission.obstacle), virtual.vehicle.airframe.radius)
+        choices = beginning(what.settings).choices
+        recorder = ReplayRecorder(session, virtual.local.pilot, choices, director, handle_at(RATE_HZ))
         ending.callback(recorder.flush)
         yield recorder
     if asked.speed:

@@ -4,13 +4,18 @@ from __future__ import annotations
 
 from typing import Any, cast
 
+from drivers.device import DeviceInfo
 from groundstation.bus import Bus
 from groundstation.evaluation.sample import Sample
 from groundstation.frames import body_from_world
 from groundstation.messages import (
+    DEVICE_REPORT,
+    MISSION_PROGRESS,
     VEHICLE_STATE,
     VEHICLE_STATUS,
+    DeviceReport,
     FlightMode,
+    MissionProgress,
     Phase,
     Record,
     Stream,
@@ -25,6 +30,7 @@ from groundstation.pilot.pilot import Pilot
 from groundstation.pilot.sight import ZERO4, VehicleSample
 from groundstation.recording.batch import Batch
 from groundstation.recording.session import Session
+from groundstation.training.director import Director
 
 _BATCH_S = 1.0
 _STEP_S, _CUT = 0.02, False
@@ -58,13 +64,19 @@ class ReplayRecorder:
         session: Where it goes.
         pilot: That flies, to be asked where the vehicle would stop.
         choices: The operator's.
+        director: Judges how the mission goes.
+        device: The handle that is held.
     """
 
-    def __init__(self, session: Session, pilot: Pilot, choices: Choices) -> None:
+    def __init__(
+        self, session: Session, pilot: Pilot, choices: Choices, director: Director, device: DeviceInfo
+    ) -> None:
         self._session, self._pilot, self._choices = session, pilot, choices
+        self._director, self._device = director, device
         self._collector = Collector()
         self._outbox = Outbox(cast(Bus, self._collector))
         self._due = _BATCH_S
+        self._reported = False
 
     def __call__(self, sample: Sample) -> None:
         """Record a sample."""
@@ -79,6 +91,9 @@ class ReplayRecorder:
         batch = self._collector.batch
         batch.add(VEHICLE_STATE, [_state(sample)])
         batch.add(VEHICLE_STATUS, [_status(sample, coupled=coupled)])
+        batch.add(MISSION_PROGRESS, [self._progress(sample, coupled=coupled)])
+        batch.add(DEVICE_REPORT, [] if self._reported else [_report(t, self._device)])
+        self._reported = True
         if t >= self._due:
             self._due = t + _BATCH_S
             self.flush()
@@ -87,6 +102,25 @@ class ReplayRecorder:
         """Hand over what has come since the last time."""
         batch, self._collector.batch = self._collector.batch, Batch()
         self._session.take(batch)
+
+    def _progress(self, sample: Sample, *, coupled: bool) -> MissionProgress:
+        x, y, z, _ = sample.p
+        self._director.vehicle(sample.t, (x, y, z), in_air=True, armed=True)
+        if coupled:
+            self._director.controller(sample.outputs.error[:3], sample.outputs.force)
+        return self._director.progress(sample.t)
+
+
+def _report(t: float, device: DeviceInfo) -> DeviceReport:
+    return DeviceReport(
+        t=t,
+        name=device.name.encode(),
+        renders=device.renders.encode(),
+        workspace=device.workspace,
+        force_limit=device.force_limit,
+        present=1,
+        homed=1,
+    )
 
 
 def _state(sample: Sample) -> VehicleState:

@@ -26,6 +26,7 @@ BENCHES = {
     "screen": "what the screen costs while it flies, and ticks the servo loses to it",
     "evaluate": "how many times as fast as real time flights are evaluated",
     "recording": "what recording costs: share of a core, MB a minute, rows lost",
+    "killed": "what a recording misses after a process of the flight was killed",
     "report": "report on a flight of ten minutes, and loading it",
     "identify": "how exactly χ comes back out of noisy flights of every preset",
     "shield": "full-stick adversaries through obstacle fields, with and without the guard",

@@ -21,7 +21,6 @@ from groundstation.evaluation.local_site import handle_at
 from groundstation.evaluation.remote_site import TakeOffError
 from groundstation.evaluation.sample import Observer
 from groundstation.messages import Severity
-from groundstation.pilot.chooser import beginning
 from groundstation.pilot.guest import load_controller
 from groundstation.recording.live import find_viewer, has_display, start_viewer
 from groundstation.recording.session import Session
@@ -145,8 +144,7 @@ def _observers(
     """Yield who sees the replay, in the order of what they do."""
     if session:
         director = Director(what.mission, World(what.mission.obstacle), virtual.vehicle.airframe.radius)
-        choices = beginning(what.settings).choices
-        recorder = ReplayRecorder(session, virtual.local.pilot, choices, director, handle_at(RATE_HZ))
+        recorder = ReplayRecorder(session, virtual.local, director, handle_at(RATE_HZ))
         ending.callback(recorder.flush)
         yield recorder
     if asked.speed:

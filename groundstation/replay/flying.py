@@ -66,7 +66,7 @@ class Replay:
     def __init__(
         self, flight: Flight, what: What, observers: Callable[[VirtualFlight], Sequence[Observer]]
     ) -> None:
-        self._hand = recorded_hand(flight, handle_at(RATE_HZ).workspace)
+        self._hand = recorded_hand(flight, handle_at(RATE_HZ).workspace, what.settings)
         heading = what.settings.mapping.frame == "heading"
         self._others: Sequence[Observer] = ()
         setup = Setup(
@@ -79,6 +79,7 @@ class Replay:
             seed=what.seed,
             controller=what.controller,
             fence=what.mission.fence,
+            operator=self._hand,
         )
         try:
             radius = load_airframe(what.mission.vehicle.airframe).radius
@@ -92,7 +93,7 @@ class Replay:
 
     @property
     def seconds(self) -> float:
-        """How long the recorded hand was coupled."""
+        """From the recorded hand's first coupling to its last release."""
         return self._hand.seconds
 
     @property

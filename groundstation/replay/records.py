@@ -6,6 +6,7 @@ from typing import Any, cast
 
 from drivers.device import DeviceInfo
 from groundstation.bus import Bus
+from groundstation.evaluation.local_site import LocalSite
 from groundstation.evaluation.sample import Sample
 from groundstation.frames import body_from_world
 from groundstation.messages import (
@@ -23,10 +24,8 @@ from groundstation.messages import (
     VehicleState,
     VehicleStatus,
 )
-from groundstation.pilot.choices import Choices
 from groundstation.pilot.inputs import Inputs
 from groundstation.pilot.outbox import Outbox, Tick
-from groundstation.pilot.pilot import Pilot
 from groundstation.pilot.sight import ZERO4, VehicleSample
 from groundstation.recording.batch import Batch
 from groundstation.recording.session import Session
@@ -62,16 +61,13 @@ class ReplayRecorder:
 
     Args:
         session: Where it goes.
-        pilot: That flies, to be asked where the vehicle would stop.
-        choices: The operator's.
+        local: The operator's side, to be asked what is chosen and where the vehicle would stop.
         director: Judges how the mission goes.
         device: The handle that is held.
     """
 
-    def __init__(
-        self, session: Session, pilot: Pilot, choices: Choices, director: Director, device: DeviceInfo
-    ) -> None:
-        self._session, self._pilot, self._choices = session, pilot, choices
+    def __init__(self, session: Session, local: LocalSite, director: Director, device: DeviceInfo) -> None:
+        self._session, self._local = session, local
         self._director, self._device = director, device
         self._collector = Collector()
         self._outbox = Outbox(cast(Bus, self._collector))
@@ -85,8 +81,9 @@ class ReplayRecorder:
         hand = sample.handle
         self._outbox.handle(t, hand, outputs.force, present=True)
         self._outbox.setpoint(t, outputs.setpoint, t, active=coupled)
-        inputs = Inputs(_STEP_S, phase, _CUT, hand, _UNSEEN, sample.state_age, choices=self._choices)
-        tick = Tick(inputs, outputs, self._pilot.stop(outputs))
+        choices = self._local.operator.choices()
+        inputs = Inputs(_STEP_S, phase, _CUT, hand, _UNSEEN, sample.state_age, choices=choices)
+        tick = Tick(inputs, outputs, self._local.pilot.stop(outputs))
         self._outbox.pilot_state(t, tick, phase, "", centred=True)
         batch = self._collector.batch
         batch.add(VEHICLE_STATE, [_state(sample)])

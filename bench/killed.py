@@ -45,18 +45,22 @@ def missing_after(victim: str, moment: float) -> float:
     with tempfile.TemporaryDirectory() as folder:
         program = subprocess.Popen(
             [sys.executable, "-m", "groundstation.cli", *_FLIGHT, "--logs", folder],
-            stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+            stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True,
         )  # fmt: skip
         while not (found := list(Path(folder).glob("*.rrd"))):
             time.sleep(0.02)
         time.sleep(moment)
-        recorder = _pid(program.pid, _MODULES["recorder"])
-        os.kill(program.pid if victim == "program" else _pid(program.pid, _MODULES[victim]), signal.SIGKILL)
+        processes = {role: _pid(program.pid, module) for role, module in _MODULES.items()} | {
+            "program": program.pid
+        }
+        if 0 in processes.values():
+            raise SystemExit(f"the flight ended by itself before: {program.communicate()[1]}")
+        os.kill(processes[victim], signal.SIGKILL)
         killed = time.time()
         time.sleep(_GOES_ON_S)
         program.terminate()
-        program.wait(_END_S)
-        while Path(f"/proc/{recorder}").exists():
+        program.communicate(timeout=_END_S)
+        while Path(f"/proc/{processes['recorder']}").exists():
             time.sleep(0.02)
         flight = Flight(found[0])
         began = datetime.datetime.fromisoformat(str(flight.properties()["started"])).timestamp()
@@ -64,7 +68,7 @@ def missing_after(victim: str, moment: float) -> float:
 
 
 def _pid(parent: int, module: str) -> int:
-    """Return the process of a module that a program has started."""
+    """Return the process of a module that a program has started, or 0."""
     for folder in Path("/proc").iterdir():
         if not folder.name.isdigit():
             continue
@@ -75,7 +79,7 @@ def _pid(parent: int, module: str) -> int:
             continue
         if int(above) == parent and "-m" in words and words[words.index("-m") + 1] == module:
             return int(folder.name)
-    raise SystemExit(f"{module} does not run")
+    return 0
 
 
 def main(*, short: bool) -> Iterator[str]:

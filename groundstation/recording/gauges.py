@@ -11,7 +11,7 @@ from groundstation.config import Shield
 from groundstation.messages import DEVICE_REPORT, HANDLE, MISSION_PROGRESS
 from groundstation.recording import schema
 from groundstation.recording.batch import Batch
-from groundstation.recording.columns import rows_of
+from groundstation.recording.columns import rows_in
 from groundstation.recording.item import Chunk, Numbers, time_column
 
 # Ticks of the servo in a row: what it pushed at most within them.
@@ -35,13 +35,13 @@ class Gauges:
         """Yield a batch's rows."""
         for report in batch.of(DEVICE_REPORT):
             self._limit = report.force_limit if report.present else np.nan
-        if handles := batch.of(HANDLE):
-            rows = rows_of(handles)
+        if batch.of(HANDLE):
+            rows = rows_in(batch, HANDLE)
             firsts = np.arange(0, len(rows), _TICKS)
             sizes = np.maximum.reduceat(np.linalg.norm(rows["force"], axis=1), firsts)
             yield self._chunk(schema.FORCE_SIZE, rows["t"][firsts], sizes, self._limit)
-        if progress := batch.of(MISSION_PROGRESS):
-            rows = rows_of(progress)
+        if batch.of(MISSION_PROGRESS):
+            rows = rows_in(batch, MISSION_PROGRESS)
             clearance = np.where(np.isfinite(rows["clearance"]), rows["clearance"], np.nan)
             # Where nothing stands there is nothing to keep a margin to.
             margin = np.where(np.isfinite(clearance), self._margin, np.nan)

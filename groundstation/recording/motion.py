@@ -11,7 +11,7 @@ import rerun as rr
 from groundstation.messages import HANDLE, PILOT_STATE, VEHICLE_STATE, Phase
 from groundstation.recording import entities
 from groundstation.recording.batch import Batch
-from groundstation.recording.columns import Rows, rows_of
+from groundstation.recording.columns import Rows, rows_in, rows_of
 from groundstation.recording.item import Chunk, Numbers, time_column
 
 # States in a strip: short enough to grow smoothly, long enough to keep a long flight's trail cheap.
@@ -80,12 +80,12 @@ class Motion:
         """Yield a batch's motion."""
         if states := [state for state in batch.of(VEHICLE_STATE) if state.valid]:
             yield from self._vehicle(rows_of(states))
-        if handles := batch.of(HANDLE):
-            rows = rows_of(handles)
+        if batch.of(HANDLE):
+            rows = rows_in(batch, HANDLE)
             self._force_t = np.concatenate((self._force_t[-1:], rows["t"]))
             self._force = np.concatenate((self._force[-1:], rows["force"]))
-        if pilot := batch.of(PILOT_STATE):
-            yield from self._hand(rows_of(pilot))
+        if batch.of(PILOT_STATE):
+            yield from self._hand(rows_in(batch, PILOT_STATE))
 
     def _vehicle(self, rows: Rows) -> Iterator[Chunk]:
         times, position = rows["t"] - self._start, rows["position"]

@@ -16,6 +16,7 @@ import sys
 import tempfile
 import threading
 import time
+from collections.abc import Callable
 from pathlib import Path
 
 from drivers.stick import StickSender
@@ -126,10 +127,16 @@ class Program:
         arguments: Its command line.
         columns, rows: Size of the terminal.
         under: Command that starts it, as `setpriv` does with fewer rights.
+        watch: Is given all that the program writes.
     """
 
     def __init__(
-        self, *arguments: str, columns: int = 200, rows: int = 60, under: tuple[str, ...] = ()
+        self,
+        *arguments: str,
+        columns: int = 200,
+        rows: int = 60,
+        under: tuple[str, ...] = (),
+        watch: Callable[[bytes], None] = lambda _: None,
     ) -> None:
         self.started = time.monotonic()
         controller, terminal = pty.openpty()
@@ -141,7 +148,7 @@ class Program:
         )  # fmt: skip
         os.close(terminal)
         self._controller = controller
-        self._closed = False
+        self._closed, self._watch = False, watch
         self._reader = threading.Thread(target=self._drain, daemon=True)
         self.screen = bytearray()
         self.written = 0
@@ -230,6 +237,7 @@ class Program:
             try:
                 taken = os.read(self._controller, 65536)
                 self.screen += taken
+                self._watch(taken)
                 self.written += len(taken)
             except OSError:
                 # Nobody has the terminal open now; somebody may again.

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
-from typing import Any
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -13,6 +13,7 @@ from groundstation.messages import (
     ATTITUDE,
     COMMAND,
     COMMAND_ANSWER,
+    DEVICE_REPORT,
     HANDLE,
     HEARTBEAT,
     MISSION_PROGRESS,
@@ -20,6 +21,7 @@ from groundstation.messages import (
     PILOT_STATE,
     SERVO_REPORT,
     SETPOINT,
+    TICK_INPUTS,
     VEHICLE_STATE,
     VEHICLE_STATUS,
     Heartbeat,
@@ -99,7 +101,16 @@ _NUMBERS: tuple[tuple[Topic[Any], tuple[tuple[Quantity, Callable[[Rows], Numbers
         (
             (schema.HANDLE_POSITION, _with_yaw("position")),
             (schema.HANDLE_VELOCITY, _fields("velocity")),
+            # Exact both ways: so is a difference of floats within a factor of two of each other (Sterbenz's lemma).
+            (schema.SAMPLE_AGE, lambda rows: rows["t"] - rows["device_t"]),
             (schema.HANDLE_FORCE, _fields("force")),
+        ),
+    ),
+    (
+        TICK_INPUTS,
+        (
+            (schema.TICK, _fields("tick", "dt", "fitted", "read", "homed", "present")),
+            (schema.KNOWN, _fields("state_t", "status_t", "ranges_t", "command_t", "commands")),
         ),
     ),
     (
@@ -197,24 +208,54 @@ _NUMBERS: tuple[tuple[Topic[Any], tuple[tuple[Quantity, Callable[[Rows], Numbers
 )
 
 
-def number_chunks(batch: Batch, start: float) -> Iterator[Chunk]:
-    """Yield the numbers of a batch, an entity each.
+# What changes seldom: a row only when it does.
+_RARE: tuple[tuple[Topic[Any], Quantity, Callable[[Rows], Numbers]], ...] = (
+    (HANDLE, schema.HANDLE_BUTTONS, lambda rows: rows["buttons"].astype(np.float64)[:, None]),
+    (VEHICLE_STATUS, schema.STATUS, _fields("connected", "armed", "in_air", "mode", "streaming")),
+    (DEVICE_REPORT, schema.LIMITS, _fields("axes", "workspace", "force_limit", "stiffness_limit", "rate")),
+)
 
-    Args:
-        batch: What came.
-        start: Monotonic time that is 0 on the timeline, s.
-    """
+
+class Column(NamedTuple):
+    """Numbers of a quantity: (n,) monotonic s, and (n, parts) or (n,) values."""
+
+    quantity: Quantity
+    t: Numbers
+    values: Numbers
+
+
+def number_columns(batch: Batch) -> Iterator[Column]:
+    """Yield the numbers of a batch, a quantity each, a row a record."""
     for topic, quantities in _NUMBERS:
         records = batch.of(topic)
         if not records:
             continue
         rows = rows_of(records)
-        times = time_column(rows["t"] - start)
+        t = rows["t"]
         for quantity, values in quantities:
             numbers = values(rows)
             if quantity is not schema.RING:
                 numbers = _finite_or_nan(numbers)
-            yield Chunk(quantity.path, times, rr.Scalars.columns(scalars=numbers))
+            yield Column(quantity, t, numbers)
+    if untrusted := [state for state in batch.of(VEHICLE_STATE) if not state.valid]:
+        rows = rows_of(untrusted)
+        told = np.column_stack((rows["position"], rows["velocity"]))
+        yield Column(schema.UNTRUSTED, rows["t"], _finite_or_nan(told))
+
+
+def number_chunks(columns: Iterable[Column], start: float) -> Iterator[Chunk]:
+    """Yield numbers as they are sent, an entity each.
+
+    Args:
+        columns: The numbers.
+        start: Monotonic time that is 0 on the timeline, s.
+    """
+    shared, times = np.empty(0), time_column(np.empty(0))
+    for quantity, t, values in columns:
+        # Quantities of one record have their times in common.
+        if t is not shared:
+            shared, times = t, time_column(t, start)
+        yield Chunk(quantity.path, times, rr.Scalars.columns(scalars=values))
 
 
 def _finite_or_nan(values: Numbers) -> Numbers:
@@ -241,25 +282,26 @@ class Heartbeats:
             self._last[role] = heard[-1].t
             yield Chunk(
                 schema.heartbeat(role).path,
-                time_column(times[1:] - start),
+                time_column(times[1:], start),
                 rr.Scalars.columns(scalars=np.diff(times)),
             )
 
 
-class Buttons:
-    """The handle's buttons, a row only when one is pressed or let go."""
+class OnChange:
+    """Numbers that seldom change, a row only when one does."""
 
     def __init__(self) -> None:
-        self._last = -1.0
+        self._last: dict[str, Numbers] = {}
 
-    def chunks(self, batch: Batch, start: float) -> Iterator[Chunk]:
+    def columns(self, batch: Batch) -> Iterator[Column]:
         """Yield a batch's changes."""
-        if not (handles := batch.of(HANDLE)):
-            return
-        rows = rows_of(handles)
-        buttons = rows["buttons"].astype(np.float64)
-        changed = np.diff(buttons, prepend=self._last) != 0
-        self._last = buttons[-1]
-        if changed.any():
-            times = time_column(rows["t"][changed] - start)
-            yield Chunk(schema.HANDLE_BUTTONS.path, times, rr.Scalars.columns(scalars=buttons[changed]))
+        for topic, quantity, values_of in _RARE:
+            if not (records := batch.of(topic)):
+                continue
+            rows = rows_of(records)
+            values = values_of(rows)
+            before = self._last.get(quantity.path, np.full(values.shape[1], np.nan))
+            self._last[quantity.path] = values[-1]
+            changed = (np.diff(values, axis=0, prepend=before[None]) != 0.0).any(axis=1)
+            if changed.any():
+                yield Column(quantity, rows["t"][changed], values[changed])

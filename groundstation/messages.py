@@ -618,7 +618,7 @@ class Topic(Generic[R]):
 HANDLE = Topic("handle", Handle, depth=4096, history=1024)
 TICK_INPUTS = Topic("tick_inputs", TickInputs, depth=512, history=64)
 SETPOINT = Topic("setpoint", Setpoint, depth=256, wakes=True)
-PILOT_STATE = Topic("pilot_state", PilotState, depth=256)
+PILOT_STATE = Topic("pilot_state", PilotState, depth=256, history=64)
 VEHICLE_STATE = Topic("vehicle_state", VehicleState, depth=1024)
 ATTITUDE = Topic("attitude", Attitude, depth=1024)
 VEHICLE_STATUS = Topic("vehicle_status", VehicleStatus, depth=256)

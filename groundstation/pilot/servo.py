@@ -89,7 +89,7 @@ class Servo:
         self._reason = ""
         self._last_t = clock()
         self._step_s = 0.0
-        self._told_present = False
+        self._told_present, self._told_info = False, ABSENT
         self._fitted = self._taken = 0
         self._taken_t = 0.0
         self._fit(ABSENT)
@@ -128,8 +128,8 @@ class Servo:
         """Tell twice a second which device there is, at once when it comes or goes, and how time is kept."""
         keeper = self._keeper
         due = self._report_due.due(now)
-        if due or keeper.present is not self._told_present:
-            self._told_present = keeper.present
+        if due or keeper.present is not self._told_present or keeper.info is not self._told_info:
+            self._told_present, self._told_info = keeper.present, keeper.info
             self._outbox.device_report(now, keeper.info, present=keeper.present, homed=self._homed)
         if not due:
             return

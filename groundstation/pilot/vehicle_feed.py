@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import inf, nan
+from math import inf, isfinite, nan
 
 from groundstation.bus import Bus
 from groundstation.frames import Vector3, Vector4
@@ -106,7 +106,9 @@ class VehicleFeed:
         self.newest_t = state.t
         position, velocity = tuple(state.position), tuple(state.velocity)
         self.valid = bool(state.valid)
-        self.believable = believable((*position, *velocity, state.t, state.boot_t))
+        # A clock may well stand at a million seconds: that is eleven days since its machine was started.
+        clocks = isfinite(state.t) and isfinite(state.boot_t)
+        self.believable = clocks and believable((*position, *velocity))
         if not self.believable:
             return
         self.sample = VehicleSample(position, velocity)

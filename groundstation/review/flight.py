@@ -94,6 +94,29 @@ class Flight:
         since = [_nanoseconds(chunk) for chunk in self._timed.get(quantity.path, ())]
         return (np.sort(np.concatenate([np.empty(0, np.int64), *since])) + self._start_ns) / 1e9
 
+    @property
+    def start(self) -> float:
+        """When the run was started on that clock, s.
+
+        Raises:
+            InputError: It was recorded before schema 4.
+        """
+        return self._start_ns / 1e9
+
+    def held(self, quantity: Quantity, t: Numbers) -> Numbers:
+        """Return what a quantity that is recorded on a change was at given times, (n, parts); NaN before the first.
+
+        Args:
+            quantity: What is asked for.
+            t: (n,), s on the clock of the machine that flew.
+
+        Raises:
+            InputError: It was recorded before schema 4.
+        """
+        unknown = np.full((1, len(quantity.parts)), np.nan)
+        rows = np.concatenate((unknown, self.series(quantity).values))
+        return rows[np.searchsorted(self.clock(quantity), t, side="right")]
+
     @functools.cached_property
     def _start_ns(self) -> int:
         start = self._facts().get("start_ns")

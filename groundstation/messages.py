@@ -614,20 +614,20 @@ class Topic(Generic[R]):
     wakes: bool = False
 
 
-# A recorder that begins to listen a little after the pilot still gets its first ticks.
+# A recorder that begins to listen a little after the pilot still gets its first ticks, and what they were made from.
 HANDLE = Topic("handle", Handle, depth=4096, history=1024)
 TICK_INPUTS = Topic("tick_inputs", TickInputs, depth=512, history=64)
 SETPOINT = Topic("setpoint", Setpoint, depth=256, wakes=True)
 PILOT_STATE = Topic("pilot_state", PilotState, depth=256, history=64)
-VEHICLE_STATE = Topic("vehicle_state", VehicleState, depth=1024)
+VEHICLE_STATE = Topic("vehicle_state", VehicleState, depth=1024, history=128)
 ATTITUDE = Topic("attitude", Attitude, depth=1024)
-VEHICLE_STATUS = Topic("vehicle_status", VehicleStatus, depth=256)
-OBSTACLES = Topic("obstacles", Ranges)
+VEHICLE_STATUS = Topic("vehicle_status", VehicleStatus, depth=256, history=64)
+OBSTACLES = Topic("obstacles", Ranges, history=32)
 COMMAND = Topic("command", Command, history=0)
 COMMAND_ANSWER = Topic("command_answer", CommandAnswer, history=0)
 EVENT = Topic("event", Event, depth=256, history=32)
 SERVO_REPORT = Topic("servo_report", ServoReport)
-DEVICE_REPORT = Topic("device_report", DeviceReport)
+DEVICE_REPORT = Topic("device_report", DeviceReport, history=16)
 MISSION_PROGRESS = Topic("mission_progress", MissionProgress)
 HEARTBEAT = Topic("heartbeat", Heartbeat, history=0)
 

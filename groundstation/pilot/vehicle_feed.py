@@ -37,8 +37,8 @@ class VehicleFeed:
     Attributes:
         sample: Position and velocity, the last that were believable.
         state_t: When that state came, monotonic s; minus infinity before the first.
-        newest_t, status_t, ranges_t: `t` of the newest state, believable or not, of the newest status, and of what was
-            last seen around; 0 before the first.
+        newest_t, status_t, ranges_t: `t` of the newest state, believable or not, of the newest status, and of what
+            was last seen around; 0 before the first.
         believable: The very newest state is.
         valid: The vehicle trusts that state itself.
         boots: How often its clock started anew.

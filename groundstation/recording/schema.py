@@ -244,8 +244,8 @@ TICK = Quantity(
     ("tick", "dt", "fitted", "read", "homed", "present"),
     "ticks, s, times, 1 or 0",
     "on change",
-    "The tick's number; time since the last by the loop's pace; how often the controller was fitted to a device; whether "
-    "that was read, is homed, took the force",
+    "The tick's number; time since the last by the loop's pace; how often the controller was fitted to a device; "
+    "whether that was read, is homed, took the force",
 )
 KNOWN = Quantity(
     "/servo/known",
@@ -277,7 +277,8 @@ QUANTITIES: tuple[Quantity, ...] = (
     FORCE_CUE, ENVIRONMENT_CUE, MISMATCH_CUE, GUARD_CUE, DAMPING_CUE, CUE_SIZES, CUES_ON,
     PREDICTED, PREDICTED_VELOCITY, STOP, PUSH,
     *REFERENCES, *EXECUTED,
-    POSITION, VELOCITY, UNTRUSTED, ATTITUDE, RAW_ATTITUDE, RAW_RATES, BOOT_TIME, BATTERY, VOLTAGE, HEALTH_BITS, STATUS,
+    POSITION, VELOCITY, UNTRUSTED, ATTITUDE, RAW_ATTITUDE, RAW_RATES, BOOT_TIME,
+    BATTERY, VOLTAGE, HEALTH_BITS, STATUS,
     RING, RANGES, RANGE_LIMIT,
     STATE_AGE, HANDLE_AGE, ROUND_TRIP, RECKONED, SILENCE,
     LOSS, GATE,

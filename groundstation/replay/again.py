@@ -159,7 +159,9 @@ class Again:
                 self._hear(t, known, now_known)
                 known = now_known
             if fits != fitted:
-                keeper.info, fitted = device_at(self._flight, t), fits
+                if (info := device_at(self._flight, t)) is None:
+                    raise self._lost(t, "device")
+                keeper.info, fitted = info, fits
             keeper.state, keeper.present = _hand(hand, buttons, homed) if read else None, bool(present)
             self._servo.tick(t, dt)
             self._servo.report(t, late, 0, realtime=False)

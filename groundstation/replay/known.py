@@ -41,9 +41,11 @@ def known_in(flight: Flight) -> Known:
     )
 
 
-def device_at(flight: Flight, t: float) -> DeviceInfo:
-    """Return what the device was that the servo had at a time, monotonic s."""
+def device_at(flight: Flight, t: float) -> DeviceInfo | None:
+    """Return what the device was that the servo had at a time, monotonic s; None where it is not recorded."""
     axes, workspace, force, stiffness, rate = flight.held(schema.LIMITS, np.array([t]))[0].tolist()
+    if np.isnan(axes):
+        return None
     facts = flight.properties(schema.DEVICE)
     return DeviceInfo(
         str(facts.get("name", "")),

@@ -90,7 +90,7 @@ def _couplings(flight: Flight, until: float) -> int:
 
 def _in_words(checked: Checked, found: Sequence[Difference], places: Sequence[int], start: float) -> str:
     lines = [
-        f"identical: {checked.ticks} ticks in {checked.seconds:.1f} s, the hand coupled {checked.coupled} times"
+        f"identical: {checked.ticks} ticks in {checked.seconds:.1f} s, coupled stretches: {checked.coupled}"
     ]
     if found:
         first = found[0]

@@ -111,7 +111,7 @@ class Changes:
         return changed
 
     def _times(self, timed: Iterable[tuple[float, object]]) -> rr.TimeColumn:
-        return time_column(np.array([t for t, _ in timed]) - self._start)
+        return time_column(np.array([t for t, _ in timed]), self._start)
 
     def _texts(self, path: str, lines: list[tuple[float, str, str]]) -> Chunk:
         times, texts, levels = zip(*lines, strict=True)

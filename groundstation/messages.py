@@ -23,6 +23,7 @@ EVENT_TEXT = 240
 ANSWER_TEXT = 200
 REASON_TEXT = 160
 NAME_TEXT = 49
+PARAMETER_TEXT = 17
 # Sectors of the ring in `Ranges`, as many as MAVLink's OBSTACLE_DISTANCE has room for.
 RING_SECTORS = 72
 
@@ -89,6 +90,8 @@ class CommandKind(IntEnum):
     CLUTCH = 12
     PRESET = 13
     CUES = 14
+    PARAMETERS = 15
+    SET_PARAMETER = 16
 
 
 class MappingMode(IntEnum):
@@ -366,6 +369,7 @@ class VehicleStatus(Record):
         dropped: Setpoint frames the gate kept back.
         streaming: State of the setpoint stream, a `Stream`; FLYING only once the vehicle has confirmed offboard
             for this very stream.
+        unsafe: Why its own failsafes keep the hand from being coupled, or "".
     """
 
     heard_t: float
@@ -382,6 +386,7 @@ class VehicleStatus(Record):
     in_air: int
     mode: int
     streaming: int
+    unsafe: bytes
     _fields_ = (
         ("t", _F64),
         ("heard_t", _F64),
@@ -398,6 +403,28 @@ class VehicleStatus(Record):
         ("in_air", _U8),
         ("mode", _U8),
         ("streaming", _U8),
+        ("unsafe", ctypes.c_char * REASON_TEXT),
+    )
+
+
+class Parameter(Record):
+    """One of the vehicle's own parameters, each time it is read.
+
+    Attributes:
+        whole: It is an integer.
+        count: How many the vehicle has; 0 where they have not all been asked for.
+    """
+
+    name: bytes
+    value: float
+    count: int
+    whole: int
+    _fields_ = (
+        ("t", _F64),
+        ("name", ctypes.c_char * PARAMETER_TEXT),
+        ("value", _F64),
+        ("count", _U32),
+        ("whole", _U8),
     )
 
 
@@ -406,18 +433,23 @@ class Command(Record):
 
     Attributes:
         value: What a MAPPING, PRESET or CUES command chooses; of FINE and CLUTCH 1 for on, 0 for off; else 0.
+        name, amount: Which parameter of the vehicle SET_PARAMETER sets, and to what.
     """
 
     number: int
     kind: int
     value: int
     source: bytes
+    name: bytes
+    amount: float
     _fields_ = (
         ("t", _F64),
         ("number", _U64),
         ("kind", _U8),
         ("value", _U8),
         ("source", ctypes.c_char * 16),
+        ("name", ctypes.c_char * PARAMETER_TEXT),
+        ("amount", _F64),
     )
 
 
@@ -568,6 +600,8 @@ PILOT_STATE = Topic("pilot_state", PilotState, depth=256)
 VEHICLE_STATE = Topic("vehicle_state", VehicleState, depth=1024)
 ATTITUDE = Topic("attitude", Attitude, depth=1024)
 VEHICLE_STATUS = Topic("vehicle_status", VehicleStatus, depth=256)
+# A late screen still gets those that the failsafes are judged by.
+PARAMETER = Topic("parameter", Parameter, depth=4096, history=16)
 OBSTACLES = Topic("obstacles", Ranges)
 COMMAND = Topic("command", Command, history=0)
 COMMAND_ANSWER = Topic("command_answer", CommandAnswer, history=0)

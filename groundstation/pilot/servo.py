@@ -197,6 +197,7 @@ class Servo:
             state_valid=feed.valid,
             boots=feed.boots,
             link_fault=link_fault(feed.delay, feed.loss, self._settings.link),
+            unsafe=feed.unsafe,
         )
         self._last_t = now
         return hand, conditions

@@ -16,7 +16,7 @@ from typing import NoReturn
 import msgspec
 
 from groundstation.bus import Bus
-from groundstation.config import Settings, check_flown_by_rate, load_settings
+from groundstation.config import Settings, check_flown_by_rate, load_settings, usual_file
 from groundstation.errors import InputError
 from groundstation.processes import Supervisor, free_port, running
 from groundstation.run import Run
@@ -43,7 +43,7 @@ def fly(asked: argparse.Namespace) -> int:
             from groundstation.headless import fly_headless
 
             return fly_headless(run, bus, supervisor, as_json=asked.json, seed=asked.seed)
-        from groundstation.tui.app import fly_on_screen
+        from groundstation.tui.running import fly_on_screen
 
         return fly_on_screen(run, bus, supervisor)
 
@@ -99,6 +99,9 @@ def plan(asked: argparse.Namespace) -> Run:
         seed=asked.seed,
         terminal="" if asked.headless else terminal_path(),
         started=now.isoformat(timespec="milliseconds"),
+        config=str((asked.config or usual_file() or Path()).resolve())
+        if asked.config or usual_file()
+        else "",
     )
 
 

@@ -92,6 +92,7 @@ class CommandKind(IntEnum):
     CUES = 14
     PARAMETERS = 15
     SET_PARAMETER = 16
+    SETTINGS = 17
 
 
 class MappingMode(IntEnum):

@@ -7,37 +7,63 @@ out at a steady rate while the screen turns; a screen that hangs is a stick gone
 from __future__ import annotations
 
 import asyncio
-import gc
+import importlib
 import signal
-import sys
 import time
 from collections.abc import Callable, Iterable
-from typing import ClassVar
+from pathlib import Path
+from typing import ClassVar, cast
 
+import msgspec
 from textual.app import App, SystemCommand
 from textual.binding import Binding, BindingType
-from textual.screen import Screen
+from textual.screen import ModalScreen, Screen
 
-from groundstation.bus import Bus
-from groundstation.console import Console, Snapshot
+from groundstation.config import Settings, user_file
+from groundstation.console import Snapshot
+from groundstation.errors import InputError
 from groundstation.messages import CommandKind, FlightMode, Preset, Severity
-from groundstation.run import Run
+from groundstation.run import Run, write_run
+from groundstation.training.director import Director
 from groundstation.training.follower import MissionFollower
-from groundstation.tui.acts import ACTS, BY_NAME, Act, Ask, coupled, in_air
+from groundstation.tui.acts import ACTS, BY_NAME, URGENT, Act, Ask, coupled, in_air
+from groundstation.tui.checks import red
 from groundstation.tui.choices import CHOICES, CHOICES_BY_NAME, PRESETS_EXPLAINED, Choice, Wishes
 from groundstation.tui.frame import Frame, Reader, Supervisor, workspace
 from groundstation.tui.guarding import GuardWatch
 from groundstation.tui.hand import Hand, StickSender
-from groundstation.tui.hangup import HangupWatch
 from groundstation.tui.keepalive import Keepalive
+from groundstation.tui.milestones import Milestones
 from groundstation.tui.notes import Answers
-from groundstation.tui.screens.dialog import Confirm, Help
+from groundstation.tui.pages import PAGES, PAGES_BY_NAME
+from groundstation.tui.screens.dialog import Confirm, Typed
 from groundstation.tui.screens.flight import FlightScreen
+from groundstation.tui.screens.help import Help
+from groundstation.tui.screens.page import Page
+from groundstation.tui.setting_list import Entry, changed, save
 from groundstation.tui.theme import THEME
 from groundstation.tui.track import History, Track
+from groundstation.tui.viewer import Viewer
 
 _POLL_S = 0.1
-_SWITCH_S = 0.001
+_LOOK_S = 0.5
+# A kill that is not confirmed within this was not meant.
+_KILL_S = 3.0
+
+
+def _everywhere() -> list[BindingType]:
+    """Bind what works on every screen: urgent acts also over dialogs and text fields, pages over the latter."""
+    urgent = [
+        Binding(act.everywhere, f"urgent('{act.name}')", act.label, show=False, priority=True)
+        for act in URGENT
+    ]
+    pages = [Binding(page.key, f"page('{page.name}')", page.label, show=False) for page in PAGES]
+    return [
+        *urgent,
+        *pages,
+        Binding("f1", "help", "Help", show=False),
+        Binding("ctrl+c,ctrl+q", "quit", "Quit", show=False, priority=True),
+    ]
 
 
 class FlightApp(App[int]):
@@ -55,9 +81,7 @@ class FlightApp(App[int]):
     TITLE = "groundstation"
     CSS_PATH = "app.tcss"
     ALLOW_SELECT = False
-    BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("ctrl+c,ctrl+q", "quit", "Quit", show=False, priority=True)
-    ]
+    BINDINGS: ClassVar[list[BindingType]] = _everywhere()
 
     def __init__(
         self,
@@ -80,10 +104,12 @@ class FlightApp(App[int]):
         self._track, self._history = Track(), History()
         self._snapshot = console.snapshot()
         self._started = self._snapshot.t
-        self._next_poll = 0.0
+        self._next_poll = self._next_look = 0.0
         self._keepalive = Keepalive(self._send_stick, clock)
         self._follower = follower
         self._flight = FlightScreen(self.hand if stick is not None else None)
+        self._milestones, self._viewer = Milestones(), Viewer()
+        self._confirmed_real = run.simulated
 
     def get_default_screen(self) -> Screen[None]:
         """The flight screen is what everything else stands over."""
@@ -116,7 +142,49 @@ class FlightApp(App[int]):
         if snapshot.vehicle is not None and snapshot.vehicle.valid:
             self._track.add(snapshot.vehicle.position[0], snapshot.vehicle.position[1])
         self._history.add(snapshot, stale_s)
-        self._flight.show(self._frame(snapshot))
+        frame = self._frame(snapshot)
+        # What stands below a page is not seen, what stands below a dialog is.
+        (self._page or self._flight).show(frame)
+        if snapshot.t >= self._next_look:
+            self._next_look = snapshot.t + _LOOK_S
+            self._look_around(frame)
+
+    def _look_around(self, frame: Frame) -> None:
+        """Show the page that is due, but never in place of what the operator looks at."""
+        if failure := self._viewer.failure():
+            self.notify(f"The viewer: {failure}", severity="warning", timeout=8.0, markup=False)
+        if self.screen is self._flight and (due := self._milestones.page(frame.snapshot, red(frame))):
+            self.action_page(due)
+
+    @property
+    def _page(self) -> Page | None:
+        """The page that stands over the flight, if one does."""
+        return next((screen for screen in self.screen_stack if isinstance(screen, Page)), None)
+
+    @property
+    def snapshot(self) -> Snapshot:
+        """The newest of everything."""
+        return self._snapshot
+
+    @property
+    def simulated(self) -> bool:
+        """The vehicle is ours."""
+        return self._flight_run.simulated
+
+    @property
+    def director(self) -> Director | None:
+        """Knows how the mission is going, if there is one."""
+        return self._follower.director if self._follower is not None else None
+
+    @property
+    def settings(self) -> Settings:
+        """As they are set now; what is not live takes effect at the next start."""
+        return self._flight_run.settings
+
+    @property
+    def settings_file(self) -> Path:
+        """Where settings are saved."""
+        return Path(self._flight_run.config) if self._flight_run.config else user_file()
 
     def _frame(self, snapshot: Snapshot) -> Frame:
         return Frame(
@@ -157,21 +225,100 @@ class FlightApp(App[int]):
     def action_act(self, name: str) -> None:
         """Do one of the operator's acts, asking back where that is due."""
         act = BY_NAME[name]
-        if act.ask is Ask.NEVER or (act.ask is Ask.REAL and self._flight_run.simulated):
+        if act.kind is CommandKind.ENGAGE and not self._confirmed_real:
+            self._confirm_real(act)
+        elif act.ask is Ask.NEVER or (act.ask is Ask.REAL and self._flight_run.simulated):
             self._command(act)
         elif not self._hindered(act):
             which = "the simulated" if self._flight_run.simulated else "the REAL"
-            self._ask(f"{act.label} {which} vehicle?", act.explains, act.key, lambda: self._command(act))
+            killing = act.kind is CommandKind.KILL
+            # Held down, a key repeats itself: what lets it fall takes another one.
+            self.ask(
+                f"{act.label} {which} vehicle?",
+                act.explains,
+                lambda: self._command(act),
+                key="" if killing else act.key,
+                within=_KILL_S if killing else 0.0,
+            )
+
+    def _confirm_real(self, act: Act) -> None:
+        """Before a hand is first coupled to a real vehicle, have it typed that it is meant."""
+        if self._hindered(act):
+            return
+        status = self._snapshot.status
+        number = str(status.system_id) if status is not None else ""
+
+        def typed(text: str | None) -> None:
+            if text is not None:
+                self._confirmed_real = True
+                self._command(act)
+
+        self.push_screen(
+            Typed(
+                "Engage the REAL vehicle?",
+                f"The first time, type REAL or its system id, {number}. Propellers turn, people may be near.",
+                lambda text: "" if text in {"REAL", number} else f"type REAL or {number}",
+            ),
+            typed,
+        )
+
+    def action_urgent(self, name: str) -> None:
+        """Do what cannot wait, from wherever the operator is."""
+        while isinstance(self.screen, ModalScreen):
+            if name == "kill" and isinstance(self.screen, Confirm) and self.screen.asks_for(name):
+                return
+            cast("ModalScreen[object]", self.screen).dismiss(None)
+        self.action_act(name)
+
+    def action_page(self, name: str) -> None:
+        """Show a page, or go back to the flight where it is shown already."""
+        shown = self._page
+        self.action_fly()
+        if shown is None or name != shown.NAME:
+            module, _, screen = PAGES_BY_NAME[name].screen.partition(":")
+            found = getattr(importlib.import_module(f"groundstation.tui.screens.{module}"), screen)
+            page = cast("type[Page]", found)()
+            self.push_screen(page)
+
+    def action_fly(self) -> None:
+        """Go back to the flight."""
+        while self.screen is not self._flight:
+            self.pop_screen()
+
+    def action_review(self) -> None:
+        """Open the recording in the viewer."""
+        if coupled(self._snapshot) or in_air(self._snapshot):
+            self.notify("Land first: the viewer takes its time of this machine.", severity="warning")
+            return
+        self._viewer.open(self._flight_run.recording)
+        self.notify("The viewer is starting.", timeout=3.0)
+
+    def set_setting(self, entry: Entry, text: str) -> None:
+        """Change a setting, save it, and have the pilot take it where it can."""
+        try:
+            settings = changed(self.settings, entry.section, entry.key, text)
+            save(self.settings_file, entry.section, entry.key, text)
+        except InputError as error:
+            self.notify(str(error), severity="error", timeout=8.0, markup=False)
+            return
+        self._flight_run = msgspec.structs.replace(self._flight_run, settings=settings)
+        name = f"{entry.section}.{entry.key} = {text}"
+        if entry.live:
+            write_run(self._flight_run)
+            self.send(CommandKind.SETTINGS)
+            self.notify(f"{name}: saved, and taken by the pilot.", timeout=4.0, markup=False)
+        else:
+            self.notify(f"{name}: saved; takes effect at the next start.", timeout=6.0, markup=False)
 
     def action_choose(self, name: str) -> None:
         """Make one of the operator's choices: go on from what is in effect."""
         choice, pilot = CHOICES_BY_NAME[name], self._snapshot.pilot
         if not self._hindered(choice) and pilot is not None:
-            self._send(choice.kind, choice.after(self._wishes.present(choice.kind, pilot)))
+            self.send(choice.kind, choice.after(self._wishes.present(choice.kind, pilot)))
 
     def _choose_preset(self, preset: Preset) -> None:
         if not self._hindered(CHOICES_BY_NAME["preset"]):
-            self._send(CommandKind.PRESET, preset)
+            self.send(CommandKind.PRESET, preset)
 
     def _hindered(self, asked: Act | Choice) -> bool:
         """Say why an act or a choice is not possible, if so."""
@@ -183,20 +330,24 @@ class FlightApp(App[int]):
     def _command(self, act: Act) -> None:
         """Send a command, unless it has become impossible while it was asked about."""
         if not self._hindered(act):
-            self._send(act.kind)
+            self.send(act.kind)
 
-    def _send(self, kind: CommandKind, value: int = 0) -> None:
+    def send(self, kind: CommandKind, value: int = 0, name: str = "", amount: float = 0.0) -> None:
         """Send a command and watch for its answer."""
         now = self._snapshot.t
         self._wishes.sent(kind, value, now)
-        self._answers.sent(self._reader.command(kind, value), kind, now)
+        self._answers.sent(self._reader.command(kind, value, name, amount), kind, now)
 
-    def _ask(self, question: str, consequence: str, key: str, then: Callable[[], None]) -> None:
+    def ask(
+        self, question: str, consequence: str, then: Callable[[], None], *, key: str = "", within: float = 0.0
+    ) -> None:
+        """Ask back, and do it where the answer is yes; see `Confirm`."""
+
         def answered(yes: bool | None) -> None:
             if yes:
                 then()
 
-        self.push_screen(Confirm(question, consequence, key), answered)
+        self.push_screen(Confirm(question, consequence, key, within), answered)
 
     def _end(self, code: int) -> None:
         """Leave at once with an exit code; the pilot lets go when it is ended."""
@@ -205,7 +356,8 @@ class FlightApp(App[int]):
 
     def action_help(self) -> None:
         """Show the keys."""
-        self.push_screen(Help())
+        if not isinstance(self.screen, ModalScreen):
+            self.push_screen(Help(self.settings.buttons))
 
     async def action_quit(self) -> None:
         """Leave; in the air, ask first."""
@@ -213,7 +365,7 @@ class FlightApp(App[int]):
             return
         if in_air(self._snapshot):
             text = "The hand is uncoupled. A coupled vehicle holds; one that lands or returns goes on."
-            self._ask("The vehicle is in the air. Quit?", text, "q", self._leave)
+            self.ask("The vehicle is in the air. Quit?", text, self._leave, key="q")
         else:
             self._leave()
 
@@ -236,6 +388,14 @@ class FlightApp(App[int]):
         for preset, words in PRESETS_EXPLAINED.items():
             title = f"Preset: {preset.name.lower()}"
             yield SystemCommand(title, words, lambda preset=preset: self._choose_preset(preset))
+        for page in PAGES:
+            yield SystemCommand(
+                f"{page.label} ({page.key.upper()})",
+                page.explains,
+                lambda name=page.name: self.action_page(name),
+            )
+        yield SystemCommand("Back to the flight (Esc)", "From any other screen.", self.action_fly)
+        yield SystemCommand("Open the recording in the viewer", "After landing.", self.action_review)
         yield SystemCommand("Centre the stick (space)", "All axes at once.", self._flight.action_centre)
         yield SystemCommand("Help (?)", "All keys.", self.action_help)
         yield SystemCommand("Quit (q)", "Asks first while the vehicle is in the air.", self.action_quit)
@@ -244,40 +404,3 @@ class FlightApp(App[int]):
         hindrance = asked.hindrance(self._snapshot)
         words = f"Not now: {hindrance}." if hindrance else asked.explains
         return SystemCommand(f"{asked.label} ({asked.key})", words, then)
-
-
-def run_screen(
-    run: Run,
-    console: Reader,
-    supervisor: Supervisor,
-    stick: StickSender | None,
-    follower: MissionFollower | None = None,
-) -> int:
-    """Show the screen until the operator leaves; return the exit code."""
-    app = FlightApp(run, console, supervisor, stick, follower=follower)
-    # A collection that looks through all the modules again takes 0.2 s, and a stick is stale after 0.1 s.
-    gc.collect()
-    gc.freeze()
-    # Nor may painting keep the stick's thread waiting: it asks for its turn and gets it within a millisecond, and the
-    # young objects of some thousand frames are looked through before all are.
-    sys.setswitchinterval(_SWITCH_S)
-    gc.set_threshold(2_000, 20, 1_000)
-    watch = HangupWatch(sys.stdin.fileno())
-    try:
-        code = app.run()
-    finally:
-        watch.stop()
-    return (app.return_code or 0) if code is None else code
-
-
-def fly_on_screen(run: Run, bus: Bus, supervisor: Supervisor) -> int:
-    """Show the screen of a run whose processes run; return the exit code."""
-    from drivers.stick import StickSender as Sender
-
-    stick = Sender(str(run.hand)) if run.hand else None
-    try:
-        follower = MissionFollower(run.mission, bus) if run.mission else None
-        return run_screen(run, Console(bus, "screen"), supervisor, stick, follower)
-    finally:
-        if stick is not None:
-            stick.close()

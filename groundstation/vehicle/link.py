@@ -68,6 +68,7 @@ _PILOTS = frozenset(
         CommandKind.CLUTCH,
         CommandKind.PRESET,
         CommandKind.CUES,
+        CommandKind.SETTINGS,
     }
 )
 

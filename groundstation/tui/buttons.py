@@ -7,15 +7,15 @@ from groundstation.messages import Handle
 
 # In the order of a map that is read: what is used most first.
 MEANINGS = {
-    "clutch": "clutch while held: the handle moves nothing",
-    "fine": "fine while held",
-    "turn_left": "turn left while held",
-    "turn_right": "turn right while held",
-    "mapping": "rate or position, when pressed",
-    "release": "release the hand: the vehicle holds",
-    "hold": "hold, when pressed",
-    "land": "land, when pressed",
-    "return_home": "return, when pressed",
+    "clutch": "clutch, while held",
+    "fine": "fine, while held",
+    "turn_left": "turn left, while held",
+    "turn_right": "turn right, while held",
+    "mapping": "rate or position",
+    "release": "release the hand",
+    "hold": "hold",
+    "land": "land",
+    "return_home": "return",
 }
 
 

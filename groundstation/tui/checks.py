@@ -34,8 +34,8 @@ class Check(NamedTuple):
 
 
 def checks(frame: Frame) -> list[Check]:
-    """Return all checks, those of the hand first, then the vehicle's, then its own failsafes."""
-    return [
+    """Return all checks: what forbids to fly first, else the hand's, the vehicle's, its own failsafes."""
+    found = [
         _device(frame),
         _handle(frame),
         _servo(frame),
@@ -48,6 +48,7 @@ def checks(frame: Frame) -> list[Check]:
         _recording(frame),
         *_failsafes(frame),
     ]
+    return sorted(found, key=lambda check: check.severity is not _DANGER)
 
 
 def red(frame: Frame) -> int:
@@ -100,7 +101,7 @@ def _link(frame: Frame) -> Check:
         return Check("link", _DANGER, f"no vehicle at {frame.run.url}", "switch it on, check the address")
     state = (
         f"vehicle {status.system_id} heard {span_of_time(judge.link_age(status, frame.now))} ago, "
-        f"loss {quantity(100 * status.loss, '%', 1)}, round trip {quantity(1000 * status.rtt, 'ms', 0)}"
+        f"loss {quantity(100 * status.loss, '%', 1)}, RTT {quantity(1000 * status.rtt, 'ms', 0)}"
     )
     return Check("link", severity, state, "check radio and antennas" if severity else "")
 

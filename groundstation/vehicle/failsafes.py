@@ -67,7 +67,7 @@ def _among(table: Mapping[int, Verdict]) -> Callable[[float], Verdict]:
 
 _ENDS_FLIGHT = "set Hold, Return or Land: this lets it fall"
 _SETPOINTS_END = {
-    0: Verdict(_OK, "Position, or without a transmitter as NAV_RCL_ACT says"),
+    0: Verdict(_OK, "Position; without sticks, NAV_RCL_ACT"),
     1: Verdict(_CAUTION, "Altitude: it drifts with the wind", "set Hold (5) or Land (4)"),
     2: Verdict(_CAUTION, "Stabilized: somebody must fly it by hand", "set Hold (5) or Land (4)"),
     3: Verdict(_OK, "Return"),

@@ -50,10 +50,10 @@ def help_table(buttons: Buttons) -> Table:
     table.add_column(style=STYLES[Tone.TEXT], no_wrap=True)
     table.add_column(style=STYLES[Tone.MUTED])
     for act in ACTS:
-        table.add_row(act.key, act.label, act.explains)
-    _section(table, "everywhere", "on every screen, over dialogs, while text is typed")
-    for act in URGENT:
-        table.add_row(act.everywhere.upper(), act.label, act.explains)
+        table.add_row(f"{act.key} {act.everywhere.upper()}".strip(), act.label, act.explains)
+    table.add_row(
+        "", "", f"{URGENT[0].everywhere.upper()} to {URGENT[-1].everywhere.upper()} work over dialogs, too."
+    )
     _section(table, "screens", "Esc or the same key goes back to the flight")
     for page in PAGES:
         table.add_row(page.key.upper(), page.label, page.explains)

@@ -21,6 +21,11 @@ def test_every_setting_is_listed_as_the_file_would_have_it():
     for entry in entries(Settings()):
         assert changed(Settings(), entry.section, entry.key, entry.value) == Settings()
         assert entry.usual
+    assert not [
+        entry
+        for entry in entries(Settings())
+        if not entry.explains and entry.section not in {"rates", "limits"}
+    ]
     listed = {(entry.section, entry.key) for entry in entries(Settings())}
     assert ("control", "k1") in listed
     assert ("rates", "screen") in listed

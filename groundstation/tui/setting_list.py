@@ -5,6 +5,8 @@ Only the line of the key that changes is written, so that what people noted besi
 
 from __future__ import annotations
 
+import functools
+import inspect
 import re
 import tempfile
 import tomllib
@@ -29,12 +31,14 @@ class Entry(NamedTuple):
         section, key: As in the file.
         value: As TOML writes it.
         usual: It is the default.
+        explains: What it is, as the settings' own description says.
     """
 
     section: str
     key: str
     value: str
     usual: bool
+    explains: str = ""
 
     @property
     def live(self) -> bool:
@@ -46,9 +50,10 @@ def entries(settings: Settings) -> list[Entry]:
     """Return all settings of the program; those of device drivers are the drivers' own."""
     now, usual = _tables(settings), _tables(Settings())
     return [
-        Entry(section, key, _toml(value), value == usual[section][key])
+        Entry(section, key, _toml(value), value == usual[section][key], words.get(key, ""))
         for section, table in now.items()
         if section != "devices"
+        for words in [_explanations(type(getattr(settings, section)))]
         for key, value in table.items()
     ]
 
@@ -109,6 +114,21 @@ def with_line(before: str, section: str, key: str, text: str) -> str:
     else:
         lines.insert(start + 1, written)
     return "\n".join([*lines, ""])
+
+
+@functools.cache
+def _explanations(table: type) -> dict[str, str]:
+    """Return what each field of a table is, out of its description: `name, other: words` with lines that go on."""
+    described = inspect.cleandoc(table.__doc__ or "").partition("Attributes:\n")[2]
+    found: dict[str, str] = {}
+    names: list[str] = []
+    for line in described.splitlines():
+        if begun := re.match(r" {4}([a-z]\w*(?:, \w+)*): (.*)", line):
+            names = begun[1].split(", ")
+            found |= dict.fromkeys(names, begun[2])
+        elif line.strip():
+            found |= {name: f"{found[name]} {line.strip()}" for name in names}
+    return {name: re.sub(r"[`*]", "", words) for name, words in found.items()}
 
 
 def _comment(line: str) -> str:

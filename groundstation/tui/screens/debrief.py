@@ -18,6 +18,7 @@ from groundstation.tui.theme import Tone
 
 _NAME = 14
 _BAR = 24
+_ERROR = "p\u0303"
 
 
 class Debrief(Page):
@@ -66,7 +67,8 @@ def _score(director: Director, width: int) -> Iterator[Row]:
             (f"  {part.name:<{_NAME - 2}} ", Tone.TEXT),
             *gauge(part.share, 1.0001, min(_BAR, width // 4), Tone.OK),
             (f" {100 * part.share:3.0f} %", Tone.STRONG),
-            (f"  {part.formula}", Tone.MUTED),
+            # All our characters take one cell; a combining sign takes none.
+            (f"  {part.formula.replace(_ERROR, 'the error')}", Tone.MUTED),
         ]
     yield []
 

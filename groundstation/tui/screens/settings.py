@@ -21,6 +21,9 @@ from groundstation.tui.theme import Tone
 
 _KEY = 28
 _VALUE = 24
+_NOTE = 22
+# From here on what a setting is stands beside it.
+_WIDE = 100
 
 
 class SettingsPage(Page):
@@ -62,7 +65,8 @@ class SettingsPage(Page):
 
         name = f"{entry.section}.{entry.key}"
         when = "It takes effect at once." if entry.live else "It takes effect at the next start."
-        self.app.push_screen(Typed(f"{name} is {entry.value}", when, wrong, entry.value), typed)
+        words = f"{entry.explains}\n{when}" if entry.explains else when
+        self.app.push_screen(Typed(f"{name} is {entry.value}", words, wrong, entry.value), typed)
 
     def _rows(self, frame: Frame, width: int) -> list[Row]:
         del frame
@@ -71,11 +75,13 @@ class SettingsPage(Page):
 
 
 def _row(entry: Entry, width: int) -> Row:
-    when = "" if entry.live else "  at next start"
+    note = f"{'default' if entry.usual else 'changed'}{'' if entry.live else ', at next start'}"
     row: Row = [
         (f"{entry.section + '.' + entry.key:<{_KEY}} ", Tone.MUTED),
-        (f"{entry.value:<{_VALUE}}", Tone.TEXT if entry.usual else Tone.STRONG),
+        (f"{entry.value:<{_VALUE}} ", Tone.TEXT if entry.usual else Tone.STRONG),
+        (
+            f"{note:<{_NOTE}} ",
+            Tone.FAINT if entry.usual and entry.live else Tone.WARN if not entry.usual else Tone.MUTED,
+        ),
     ]
-    if width > 76:
-        row.append(("  default" if entry.usual else "  changed", Tone.FAINT if entry.usual else Tone.WARN))
-    return [*row, (when, Tone.MUTED)]
+    return [*row, (entry.explains, Tone.MUTED)] if width > _WIDE else row

@@ -106,7 +106,7 @@ class Console:
     def snapshot(self) -> Snapshot:
         """Return the newest of everything."""
         self._events.extend(self._event_stream.drain())
-        if read := self._parameter_stream.drain():
+        if read := list(self._parameter_stream.drain()):
             # A new dictionary, so that earlier snapshots stay as they were; it is seldom.
             self._parameters = self._parameters | {each.name.decode(): each for each in read}
         return Snapshot(

@@ -601,8 +601,8 @@ PILOT_STATE = Topic("pilot_state", PilotState, depth=256)
 VEHICLE_STATE = Topic("vehicle_state", VehicleState, depth=1024)
 ATTITUDE = Topic("attitude", Attitude, depth=1024)
 VEHICLE_STATUS = Topic("vehicle_status", VehicleStatus, depth=256)
-# A late screen still gets those that the failsafes are judged by.
-PARAMETER = Topic("parameter", Parameter, depth=4096, history=16)
+# A vehicle has a thousand or two, and they are read all at once.
+PARAMETER = Topic("parameter", Parameter, depth=4096, history=0)
 OBSTACLES = Topic("obstacles", Ranges)
 COMMAND = Topic("command", Command, history=0)
 COMMAND_ANSWER = Topic("command_answer", CommandAnswer, history=0)

@@ -7,11 +7,14 @@ from collections.abc import Iterator
 from mavsdk import System
 
 from groundstation.bus import Bus
+from groundstation.clock import Every
 from groundstation.messages import PARAMETER, PARAMETER_TEXT, Command, CommandKind, Parameter, fit
 from groundstation.vehicle.commander import Answer
-from groundstation.vehicle.failsafes import unsafe
+from groundstation.vehicle.failsafes import FAILSAFES, unsafe
 from groundstation.vehicle.parameters import Parameters, cannot_be_set
 
+_JUDGED = frozenset(each.name for each in FAILSAFES)
+_AGAIN_S = 1.0
 PARAMETER_COMMANDS = frozenset({CommandKind.PARAMETERS, CommandKind.SET_PARAMETER})
 
 
@@ -27,6 +30,8 @@ class ParameterDesk:
         self._parameters = Parameters(system)
         self._publisher = bus.publisher(PARAMETER)
         self._whole: dict[str, bool] = {}
+        self._judged: dict[str, Parameter] = {}
+        self._again = Every(_AGAIN_S)
         self._boots = 0
 
     @property
@@ -52,12 +57,19 @@ class ParameterDesk:
         if boots != self._boots:
             self._boots = boots
             self._parameters.forget()
+            self._judged.clear()
         while not self._parameters.read.empty():
             read = self._parameters.read.get()
             self._whole[read.name] = read.whole
-            record = Parameter(t=now, value=read.value, whole=read.whole, count=read.count)
+            record = Parameter(t=now, value=read.value, whole=read.whole, count=read.total)
             record.name = fit(read.name, PARAMETER_TEXT)
             self._publisher.send(record)
+            if read.name in _JUDGED:
+                self._judged[read.name] = record
+        if self._again.due(now):
+            # Who has come meanwhile gets to know what the failsafes are.
+            for record in self._judged.values():
+                self._publisher.send(record)
         while not self._parameters.answers.empty():
             yield self._parameters.answers.get()
 

@@ -34,12 +34,12 @@ _WORDS = {
 
 
 class Read(NamedTuple):
-    """A parameter's value; `count` is how many there are where all were read, else 0."""
+    """A parameter's value; `total` is how many there are where all were read, else 0."""
 
     name: str
     value: float
     whole: bool
-    count: int = 0
+    total: int = 0
 
 
 class Parameters:
@@ -116,7 +116,7 @@ class Parameters:
         found = [Read(each.name, float(each.value), whole=True) for each in every.int_params]
         found += [Read(each.name, float(each.value), whole=False) for each in every.float_params]
         for each in found:
-            self._take(each._replace(count=len(found)))
+            self._take(each._replace(total=len(found)))
         why = "" if found else "the vehicle told no parameter; check the link"
         self.answers.put(Answer(number, CommandKind.PARAMETERS, bool(found), why))
 

@@ -49,9 +49,7 @@ class Log(Page):
 
     def action_filter(self) -> None:
         """Let words be typed."""
-        field = self.query_one("#filter", Input)
-        field.display = True
-        field.focus()
+        self.type_into(self.query_one("#filter", Input))
 
     def action_level(self) -> None:
         """Show less, or all again."""
@@ -63,7 +61,8 @@ class Log(Page):
         field = self.query_one("#filter", Input)
         if field.display:
             field.value = ""
-            self._leave_filter()
+            field.display = False
+            self.type_no_more()
         else:
             super().action_back()
 
@@ -74,9 +73,7 @@ class Log(Page):
 
     @on(Input.Submitted)
     def _leave_filter(self) -> None:
-        field = self.query_one("#filter", Input)
-        field.display = bool(field.value)
-        self.set_focus(None)
+        self.type_no_more()
 
     def _tell(self) -> None:
         if self.lines is not None:

@@ -10,6 +10,7 @@ from textual.binding import Binding, BindingType
 from textual.containers import Vertical
 from textual.screen import Screen
 from textual.widget import Widget
+from textual.widgets import Input
 
 from groundstation.tui.acts import URGENT
 from groundstation.tui.frame import Frame
@@ -33,7 +34,11 @@ _MOVES = (
 
 
 def _bindings() -> list[BindingType]:
-    acts = [Binding(",".join(act.keys), f"app.act('{act.name}')", act.label, show=False) for act in URGENT]
+    acts = [
+        Binding(key, f"letter('{key}', '{act.name}')", act.label, show=False)
+        for act in URGENT
+        for key in act.keys
+    ]
     moves = [Binding(key, f"move({by})", "Move", show=False) for key, by in _MOVES]
     return [
         *acts,
@@ -63,6 +68,8 @@ class Page(Screen[None]):
         super().__init__()
         self._instruments: list[Instrument] = []
         self.lines: Lines | None = None
+        # The field that words are typed into, from the key that opens it until it is left.
+        self._typing: Input | None = None
 
     @property
     def flight(self) -> FlightApp:
@@ -96,6 +103,26 @@ class Page(Screen[None]):
         """Move through the list, if there is one."""
         if self.lines is not None:
             self.lines.move(by)
+
+    def type_into(self, field: Input) -> None:
+        """Let words be typed into a field."""
+        field.display = True
+        self._typing = field
+        self.set_focus(field)
+
+    def type_no_more(self) -> None:
+        """Leave the field; it stays in sight while there is something in it."""
+        if self._typing is not None:
+            self._typing.display = bool(self._typing.value)
+        self._typing = None
+        self.set_focus(None)
+
+    def action_letter(self, key: str, name: str) -> None:
+        """Do an urgent act; a letter that was typed before its field had the focus belongs to the field."""
+        if self._typing is not None:
+            self._typing.insert_text_at_cursor(key)
+        else:
+            self.flight.action_act(name)
 
     def action_back(self) -> None:
         """Go back to the flight."""

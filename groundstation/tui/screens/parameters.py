@@ -62,9 +62,7 @@ class ParametersPage(Page):
 
     def action_search(self) -> None:
         """Let a part of a name be typed."""
-        field = self.query_one("#filter", Input)
-        field.display = True
-        field.focus()
+        self.type_into(self.query_one("#filter", Input))
 
     def action_back(self) -> None:
         """End the search first, then leave."""
@@ -72,7 +70,7 @@ class ParametersPage(Page):
         if field.display:
             field.value = ""
             field.display = False
-            self.set_focus(None)
+            self.type_no_more()
         else:
             super().action_back()
 
@@ -85,8 +83,7 @@ class ParametersPage(Page):
 
     @on(Input.Submitted, "#filter")
     def _to_the_list(self) -> None:
-        self.query_one("#filter").display = bool(self._wanted)
-        self.set_focus(None)
+        self.type_no_more()
 
     @on(Lines.Chosen)
     def action_set(self) -> None:

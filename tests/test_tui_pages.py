@@ -292,7 +292,7 @@ async def test_parameters_are_read_searched_and_set_after_asking_back():
         assert "BAT_LOW_THR" in lines(scene)
         await scene.press("slash", *"obl", "enter")
         await scene.see()
-        assert lines(scene).split() == ["▸", "COM_OBL_RC_ACT", "0", "Position,", *lines(scene).split()[4:]]
+        assert lines(scene).split() == ["▸", "COM_OBL_RC_ACT", "0", "Position;", *lines(scene).split()[4:]]
         await scene.press("enter")
         assert isinstance(scene.app.screen, Typed)
         await scene.press("backspace", *"5.5", "enter")

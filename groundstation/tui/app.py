@@ -17,6 +17,7 @@ from typing import ClassVar, cast
 import msgspec
 from textual.app import App, SystemCommand
 from textual.binding import Binding, BindingType
+from textual.driver import Driver
 from textual.screen import ModalScreen, Screen
 
 from groundstation.config import Settings, user_file
@@ -36,14 +37,16 @@ from groundstation.tui.keepalive import Keepalive
 from groundstation.tui.milestones import Milestones
 from groundstation.tui.notes import Answers
 from groundstation.tui.pages import PAGES, PAGES_BY_NAME
+from groundstation.tui.releases import PREFIX, driver_for
 from groundstation.tui.screens.dialog import Confirm, Typed
-from groundstation.tui.screens.flight import FlightScreen
+from groundstation.tui.screens.flight import STEPS, FlightScreen
 from groundstation.tui.screens.help import Help
 from groundstation.tui.screens.page import Page
 from groundstation.tui.setting_list import Entry, changed, save
 from groundstation.tui.theme import THEME
 from groundstation.tui.track import History, Track
 from groundstation.tui.viewer import Viewer
+from groundstation.tui.widgets.stick import YAW, stays
 
 _POLL_S = 0.1
 _LOOK_S = 0.5
@@ -58,9 +61,15 @@ def _everywhere() -> list[BindingType]:
         for act in URGENT
     ]
     pages = [Binding(page.key, f"page('{page.name}')", page.label, show=False) for page in PAGES]
+    # A key of the stick that is let go moves nothing any more, whatever stands over the flight by then.
+    releases = [
+        Binding(f"{PREFIX}{key}", f"release({axis})", "Let go", show=False, priority=True)
+        for key, axis, _, _ in STEPS
+    ]
     return [
         *urgent,
         *pages,
+        *releases,
         Binding("f1", "help", "Help", show=False),
         Binding("ctrl+c,ctrl+q", "quit", "Quit", show=False, priority=True),
     ]
@@ -110,6 +119,11 @@ class FlightApp(App[int]):
         self._flight = FlightScreen(self.hand if stick is not None else None)
         self._milestones, self._viewer = Milestones(), Viewer()
         self._confirmed_real = run.simulated
+        self._latest: Frame | None = None
+
+    def get_driver_class(self) -> type[Driver]:
+        """Return Textual's driver, or one that hears keys let go."""
+        return driver_for(super().get_driver_class())
 
     def get_default_screen(self) -> Screen[None]:
         """The flight screen is what everything else stands over."""
@@ -142,7 +156,7 @@ class FlightApp(App[int]):
         if snapshot.vehicle is not None and snapshot.vehicle.valid:
             self._track.add(snapshot.vehicle.position[0], snapshot.vehicle.position[1])
         self._history.add(snapshot, stale_s)
-        frame = self._frame(snapshot)
+        frame = self._latest = self._frame(snapshot)
         # What stands below a page is not seen, what stands below a dialog is.
         (self._page or self._flight).show(frame)
         if snapshot.t >= self._next_look:
@@ -269,6 +283,11 @@ class FlightApp(App[int]):
                 return
             cast("ModalScreen[object]", self.screen).dismiss(None)
         self.action_act(name)
+
+    def action_release(self, axis: int) -> None:
+        """A key of the stick was let go: its axis is centred, or in position mode left where it is."""
+        if axis == YAW or self._latest is None or not stays(self._latest):
+            self.hand.place(axis, 0.0)
 
     def action_page(self, name: str) -> None:
         """Show a page, or go back to the flight where it is shown already."""

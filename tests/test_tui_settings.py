@@ -118,7 +118,7 @@ async def test_a_setting_is_checked_saved_and_taken_by_the_pilot_at_once(tmp_pat
             assert scene.reader.commands == [CommandKind.SETTINGS]
             run = read_run(run_file(scene.app._flight_run.run_id))
             assert run.settings.limits.horizontal_speed == 2.5
-            assert "taken by the pilot" in scene.notices()[-1]
+            assert "sent to the pilot" in scene.notices()[-1]
         finally:
             sweep(scene.app._flight_run.run_id)
 

@@ -325,7 +325,7 @@ class FlightApp(App[int]):
         if entry.live:
             write_run(self._flight_run)
             self.send(CommandKind.SETTINGS)
-            self.notify(f"{name}: saved, and taken by the pilot.", timeout=4.0, markup=False)
+            self.notify(f"{name}: saved, and sent to the pilot.", timeout=4.0, markup=False)
         else:
             self.notify(f"{name}: saved; takes effect at the next start.", timeout=6.0, markup=False)
 

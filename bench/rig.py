@@ -144,6 +144,7 @@ class Program:
         self._closed = False
         self._reader = threading.Thread(target=self._drain, daemon=True)
         self.screen = bytearray()
+        self.written = 0
         self._reader.start()
         self.bus = self._join()
         self.console = Console(self.bus, "bench")
@@ -227,7 +228,9 @@ class Program:
             if not select.select([self._controller], [], [], 0.1)[0]:
                 continue
             try:
-                self.screen += os.read(self._controller, 65536)
+                taken = os.read(self._controller, 65536)
+                self.screen += taken
+                self.written += len(taken)
             except OSError:
                 # Nobody has the terminal open now; somebody may again.
                 time.sleep(0.02)

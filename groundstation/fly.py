@@ -261,8 +261,8 @@ def log_stem(folder: Path, now: datetime.datetime, name: str) -> Path:
 
 
 def _viewer(asked: argparse.Namespace) -> str:
-    if not asked.rerun:
+    if not asked.rerun and asked.viewer is None:
         return ""
-    from groundstation.recording.live import start_viewer
+    from groundstation.recording.live import find_viewer, start_viewer
 
-    return start_viewer()
+    return start_viewer() if asked.viewer is None else find_viewer(asked.viewer)

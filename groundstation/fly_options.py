@@ -83,4 +83,8 @@ def add_recording(parser: argparse.ArgumentParser) -> None:
     general.add_argument("--config", type=Path, metavar="FILE", help="settings (default: groundstation.toml)")
     general.add_argument("--pilot", metavar="NAME", help="who flies (default: who is logged in)")
     general.add_argument("--logs", type=Path, default=Path("logs"), metavar="DIR", help="recordings go here")
-    general.add_argument("--rerun", action="store_true", help="show the flight live in the Rerun viewer")
+    live = general.add_mutually_exclusive_group()
+    live.add_argument("--rerun", action="store_true", help="show the flight live in the Rerun viewer")
+    live.add_argument(
+        "--viewer", metavar="HOST:PORT", help="show it in a viewer that runs already, here or elsewhere"
+    )

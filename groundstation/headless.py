@@ -253,7 +253,7 @@ class OperatorHand:
 
     def finished(self, view: Snapshot) -> bool:  # noqa: ARG002
         """Say whether the target has been held."""
-        return self._director.stage is Stage.RETURNING
+        return self._director.at_the_end
 
     def fault(self, view: Snapshot) -> str:  # noqa: ARG002
         """Return "": the mission's own limits end it."""

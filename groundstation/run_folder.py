@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import fcntl
 import os
+import re
 import secrets
 import shutil
 import tempfile
@@ -16,6 +17,7 @@ from pathlib import Path
 from typing import IO
 
 PREFIX = "groundstation-"
+_RUN_ID = re.compile(r"\d+-[0-9a-f]{6}")
 _LOCK = "alive"
 _SHARED_MEMORY = Path("/dev/shm")  # noqa: S108 - where Linux keeps POSIX shared memory; elsewhere it is absent
 # A folder without a lock file may belong to a program that is just starting.
@@ -60,10 +62,14 @@ def sweep(run_id: str) -> None:
 
 
 def sweep_dead_runs() -> None:
-    """Remove what runs left behind whose every process has died, as after SIGKILL of all of them."""
+    """Remove what runs left behind whose every process has died, as after SIGKILL of all of them.
+
+    Other folders that begin alike are somebody's, such as a comparison that is being looked at.
+    """
     for folder in Path(tempfile.gettempdir()).glob(f"{PREFIX}*-*"):
-        if _is_dead(folder):
-            sweep(folder.name.removeprefix(PREFIX))
+        run_id = folder.name.removeprefix(PREFIX)
+        if _RUN_ID.fullmatch(run_id) and _is_dead(folder):
+            sweep(run_id)
 
 
 def _is_dead(folder: Path) -> bool:

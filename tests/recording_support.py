@@ -30,6 +30,7 @@ from groundstation.messages import (
     VehicleState,
     VehicleStatus,
 )
+from groundstation.recording.batch import Batch
 from groundstation.run import Run, write_run
 from groundstation.run_folder import new_run_id, sweep
 from groundstation.training.mission import find_mission, load_mission
@@ -52,6 +53,21 @@ def a_run(log: Path, *, viewer_url: str = "", mission: bool = True) -> Run:
         viewer_url=viewer_url,
         started=STARTED,
     )
+
+
+def batch_of(topic, *records) -> Batch:
+    batch = Batch()
+    batch.add(topic, records)
+    return batch
+
+
+def rows(chunks) -> dict[str, list[tuple[float, str]]]:
+    found: dict[str, list[tuple[float, str]]] = {}
+    for chunk in chunks:
+        times = (chunk.times.times.cast("int64").to_numpy() * 1e-9).round(6).tolist()
+        cells = next(iter(chunk.columns)).as_arrow_array().to_pylist()
+        found[chunk.path] = [(t, cell[0]) for t, cell in zip(times, cells, strict=True)]
+    return found
 
 
 def until(condition: Callable[[], bool], what: str) -> None:

@@ -218,7 +218,7 @@ def test_a_time_and_some_entities_are_cut_out(recording):
     npt.assert_array_equal(cut.values, values[within])
     assert [line.t for line in selection.events] == [1.25]
     # What held as the time began is told as of then.
-    phases = Selection(flight, Asked(("/state/*", "/handle/*"), 1.0, 2.0)).states[0]
+    phases = Selection(flight, Asked(("/state/phase", "/handle/*"), 1.0, 2.0)).states[0]
     assert (phases.path, phases.changes) == ("/state/phase", [(1.0, "engaged")])
 
 

@@ -41,7 +41,7 @@ from groundstation.messages import (
 from groundstation.pilot.controller import vehicle_rates as control_law
 from groundstation.recording import entities, schema
 from groundstation.recording.batch import Batch
-from groundstation.recording.columns import Buttons, Heartbeats, number_chunks, vehicle_rates
+from groundstation.recording.columns import Heartbeats, OnChange, number_chunks, vehicle_rates
 from groundstation.recording.echoes import Echoes
 from groundstation.recording.item import Chunk
 from groundstation.recording.motion import Motion, Trail, quaternions
@@ -96,7 +96,7 @@ def full_batch() -> Batch:
 
 def test_a_batch_of_everything_fills_every_quantity_of_the_schema():
     batch = full_batch()
-    chunks = by_path([*number_chunks(batch, START), *Buttons().chunks(batch, START)])
+    chunks = by_path([*number_chunks(batch, START), *OnChange().chunks(batch, START)])
     assert set(chunks) == {quantity.path for quantity in schema.QUANTITIES}
     for quantity in schema.QUANTITIES:
         assert numbers(chunks[quantity.path]).shape == (1, len(quantity.parts)), quantity.path
@@ -200,8 +200,9 @@ def test_buttons_are_logged_when_pressed_or_let_go():
             handle.buttons = bits
         return batch_of((HANDLE, handles))
 
-    buttons = Buttons()
-    (first,) = buttons.chunks(held(0.0, 0, 0, 5, 5), START)
+    buttons = OnChange()
+    first, ready = buttons.chunks(held(0.0, 0, 0, 5, 5), START)
+    assert (ready.path, len(seconds(ready))) == (schema.HANDLE_READY.path, 1)
     npt.assert_allclose(seconds(first), [0.0, 2.0])
     npt.assert_array_equal(numbers(first)[:, 0], [0, 5])
     assert not list(buttons.chunks(held(4.0, 5, 5), START))

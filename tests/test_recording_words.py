@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from recording_support import a_pilot_state, a_run, a_status
+from recording_support import a_pilot_state, a_run, a_status, batch_of, rows
 
 from groundstation.messages import (
     COMMAND,
@@ -38,21 +38,6 @@ from groundstation.training.director import Stage
 
 START = 50.0
 DOCS = Path(__file__).resolve().parents[1] / "docs"
-
-
-def batch_of(topic, *records) -> Batch:
-    batch = Batch()
-    batch.add(topic, records)
-    return batch
-
-
-def rows(chunks) -> dict[str, list[tuple[float, str]]]:
-    found: dict[str, list[tuple[float, str]]] = {}
-    for chunk in chunks:
-        times = (chunk.times.times.cast("int64").to_numpy() * 1e-9).round(6).tolist()
-        cells = next(iter(chunk.columns)).as_arrow_array().to_pylist()
-        found[chunk.path] = [(t, cell[0]) for t, cell in zip(times, cells, strict=True)]
-    return found
 
 
 def test_a_state_is_logged_when_it_changes_and_not_again_in_the_next_batch():

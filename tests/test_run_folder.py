@@ -73,6 +73,15 @@ def test_a_folder_without_a_lock_is_left_alone_while_it_is_young():
     assert not old.exists()
 
 
+def test_another_folder_of_ours_that_is_looked_at_for_long_is_left_alone(tmp_path, monkeypatch):
+    monkeypatch.setattr(module.tempfile, "gettempdir", lambda: str(tmp_path))
+    ours = tmp_path / "groundstation-compare-1x2y3z"
+    ours.mkdir()
+    os.utime(ours, (0, 0))
+    sweep_dead_runs()
+    assert ours.is_dir()
+
+
 def test_a_file_of_that_name_is_none_of_ours(tmp_path):
     stray = tmp_path / "groundstation-1-x"
     stray.write_text("keep")

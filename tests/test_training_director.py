@@ -135,3 +135,12 @@ def test_trembling_at_an_obstacle_is_one_contact():
     t = fly(it, [(0.0, 0.0, 2.0)])
     fly(it, [(3.7, 0.0, 2.0), (3.65, 0.0, 2.0)] * 5, t=t)
     assert it.figures.collisions == 1
+
+
+def test_a_flight_without_a_target_is_free_once_its_route_is_flown():
+    mission = Mission(schema=1, name="m", title="t", route=((3.0, 0.0, 2.0),))
+    it = Director(mission, World(()), radius=0.3)
+    t = fly(it, [(0.0, 0.0, 2.0)] * 2)
+    assert (it.stage, it.at_the_end) == (Stage.ROUTE, False)
+    fly(it, [(3.0, 0.0, 2.0)] * 2, t=t)
+    assert (it.stage, it.at_the_end) == (Stage.FREE, True)

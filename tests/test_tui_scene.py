@@ -12,11 +12,13 @@ from hypothesis import strategies as st
 from groundstation.tui import scene
 from groundstation.tui.canvas import Canvas
 from groundstation.tui.theme import Tone
+from groundstation.tui.view import View, framing
 from sim.environment.shapes import extent
 from sim.scenario import Box, Cylinder, Gate, Pad, Sphere, Wall
 
 MISSION = canned_run().mission
 metres = st.floats(-500.0, 500.0)
+VIEW = View(0.0, 0.0, 0.1, 160, 160)
 
 
 def tones(canvas: Canvas) -> set[Tone]:
@@ -29,26 +31,26 @@ def tones(canvas: Canvas) -> set[Tone]:
     height=st.integers(20, 240),
 )
 def test_the_view_shows_the_start_and_all_points(points, width, height):
-    view = scene.framing(None, points, width, height)
+    view = framing(None, points, width, height)
     assert view.holds([(0.0, 0.0), *points])
 
 
 @given(st.integers(60, 400), st.integers(40, 240))
 def test_the_view_shows_the_whole_mission(width, height):
-    view = scene.framing(MISSION, [], width, height)
+    view = framing(MISSION, [], width, height)
     assert view.holds([(point[0], point[1]) for point in MISSION.route])
     assert view.holds([corner[:2] for obstacle in MISSION.obstacle for corner in extent(obstacle)])
     assert view.holds([MISSION.target.position[:2]])
 
 
 def test_north_is_up_and_east_is_right():
-    view = scene.framing(None, [], 100, 100)
+    view = framing(None, [], 100, 100)
     assert float(view.x(1.0)) > float(view.x(0.0))
     assert float(view.y(1.0)) < float(view.y(0.0))
 
 
 def test_both_axes_have_one_scale():
-    view = scene.framing(MISSION, [], 200, 100)
+    view = framing(MISSION, [], 200, 100)
     assert float(view.x(1.0) - view.x(0.0)) == pytest.approx(float(view.y(0.0) - view.y(1.0)))
 
 
@@ -61,8 +63,8 @@ def test_both_axes_have_one_scale():
     ],
 )
 def test_an_obstacle_is_beside_the_vehicle_only_at_its_altitude(obstacle, reaches, above):
-    assert scene.beside(obstacle, reaches)
-    assert not scene.beside(obstacle, above)
+    assert scene.beside(obstacle, reaches, VIEW)
+    assert not scene.beside(obstacle, above, VIEW)
 
 
 def with_world(*obstacles, pad=()):
@@ -71,8 +73,8 @@ def with_world(*obstacles, pad=()):
 
 def test_a_gates_posts_are_solid_and_its_opening_is_crossed_by_lines_only():
     mission = with_world(Gate("g", (5.0, 0.0, 2.0), 3.0, 3.0, frame=0.4))
-    assert scene.levels(mission, 2.0) == (True, True, False, False)
-    view = scene.framing(mission, [], 160, 100)
+    view = framing(mission, [], 160, 100)
+    assert scene.levels(mission, 2.0, view) == (True, True, False, False)
     canvas = Canvas(80, 25)
     scene.draw_world(canvas, view, mission, 2.0)
     x, post, middle = (int(view.x(5.0)), int(view.y(1.7)), int(view.y(0.0)))
@@ -84,7 +86,7 @@ def test_walls_and_pads_are_within_the_view_and_drawn():
     mission = with_world(
         Wall("long", (-2.0, 12.0), (30.0, 12.0), 2.0), pad=(Pad("roof", (0.0, -15.0, 3.0), 1.0),)
     )
-    view = scene.framing(mission, [], 160, 100)
+    view = framing(mission, [], 160, 100)
     assert view.holds([(-2.0, 11.95), (30.0, 12.05), (-1.0, -16.0), (1.0, -14.0)])
     bare, full = Canvas(80, 25), Canvas(80, 25)
     scene.draw_world(bare, view, with_world(mission.obstacle[0]), 1.0)
@@ -97,7 +99,7 @@ def test_walls_and_pads_are_within_the_view_and_drawn():
 
 
 def test_obstacles_beside_the_vehicle_are_drawn_solid_others_as_outlines():
-    view = scene.framing(MISSION, [], 160, 100)
+    view = framing(MISSION, [], 160, 100)
     low, high = Canvas(80, 25), Canvas(80, 25)
     scene.draw_world(low, view, MISSION, 2.0)
     scene.draw_world(high, view, MISSION, 20.0)
@@ -108,7 +110,7 @@ def test_obstacles_beside_the_vehicle_are_drawn_solid_others_as_outlines():
 
 
 def test_the_scale_is_as_long_as_it_says():
-    view = scene.View(0.0, 0.0, 0.05, 160, 80)
+    view = View(0.0, 0.0, 0.05, 160, 80)
     canvas = Canvas(80, 20)
     scene.draw_legend(canvas, view)
     line = "".join(text for text, _ in canvas.to_rows()[-1])

@@ -22,6 +22,8 @@ _LOAD_S = 60.0
 # Notes that the viewer shows over the window's corner when it starts fade within this.
 _NOTES_S = 6.0
 _POLL_S = 0.1
+# A plot's axes glide to the data within this.
+_REST_S = 8.0
 
 
 class ViewerError(Exception):
@@ -29,18 +31,23 @@ class ViewerError(Exception):
 
 
 class HeadlessViewer:
-    """A viewer of 1920 by 1080 points that listens on loopback only. Use it in a `with` block.
+    """A viewer that listens on loopback only. Use it in a `with` block.
+
+    Args:
+        size: Of its window, points.
 
     Raises:
         ViewerError: It does not start, as without a graphics driver.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, size: str = "1920x1080") -> None:
         port = free_tcp_port()
         self._process = subprocess.Popen(
             [
                 program(),
                 "--headless",
+                "--window-size",
+                size,
                 "--port",
                 str(port),
                 *LOOPBACK,
@@ -102,7 +109,17 @@ class HeadlessViewer:
         time.sleep(max(0.0, self._started + _NOTES_S - time.monotonic()))
         views = self._client.get_state().views
         view_id = next((v.view_id for v in views if view and v.name.startswith(view)), None)
-        self._client.save_screenshot(str(path.resolve()), view_id)
+        last = b""
+
+        def at_rest() -> bool:
+            """Say whether the picture is the one before: axes glide to their ranges."""
+            nonlocal last
+            before = last
+            self._client.save_screenshot(str(path.resolve()), view_id)
+            last = path.read_bytes()
+            return last == before
+
+        _until(at_rest, _REST_S)
 
     def complaints(self) -> list[str]:
         """Return what views say went wrong, a sentence each."""

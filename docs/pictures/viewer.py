@@ -21,12 +21,13 @@ parser.add_argument("recording", type=Path)
 parser.add_argument("--at", type=float, help="moment of the flight, s (default: three quarters of it)")
 parser.add_argument("--tab", type=int, default=0, help="which tabs are in front (0 is the first)")
 parser.add_argument("--view", help="show this one view (its name's beginning) instead of the whole window")
+parser.add_argument("--size", default="1920x1080", help="of the window, points")
 parser.add_argument("--out", type=Path, default=PICTURE)
 asked = parser.parse_args()
 if not asked.recording.is_file():
     parser.error(f"{asked.recording}: there is no such recording")
 
-with HeadlessViewer() as viewer:
+with HeadlessViewer(asked.size) as viewer:
     viewer.open(asked.recording)
     viewer.go_to(asked.at)
     viewer.turn_tabs(asked.tab)

@@ -55,19 +55,22 @@ class Coupling:
         self.phase = Phase.DISENGAGED
         self._next_request = -math.inf
 
-    def update(self, t: float, handle: HandleState, fault: str) -> None:
+    def update(self, t: float, handle: HandleState, fault: str, *, wanted: bool = True) -> None:
         """Go on.
 
         Args:
             t: Now, s.
             handle: As it is now.
             fault: Why the pilot could not fly the last tick, or "".
+            wanted: The operator wants to be coupled; what he ends himself is no loss.
         """
         conditions, safety = self._conditions(t, handle), self._settings.safety
         self._engagement, ending = advance(self._engagement, conditions, safety)
         if fault and ending is None:
             self._engagement, ending = disengage(self._engagement, fault)
-        if ending is not None:
+        if not wanted:
+            self._engagement = Engagement()
+        elif ending is not None:
             self.losses += 1
             self.reason = ending.words
             self._next_engage = t + _COUPLE_AGAIN_S

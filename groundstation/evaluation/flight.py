@@ -15,6 +15,7 @@ from groundstation.config import Settings
 from groundstation.evaluation.channel_ends import Link
 from groundstation.evaluation.hands import Hand
 from groundstation.evaluation.local_site import LocalSite, Mover, handle_at
+from groundstation.evaluation.operator import Operator, Steady
 from groundstation.evaluation.remote_site import STEP_S, RemoteSite
 from groundstation.evaluation.sample import Observer, Sample
 from groundstation.pilot.chooser import beginning
@@ -42,6 +43,7 @@ class Setup(NamedTuple):
         seed: Of all that is random: air, estimate, channel.
         controller: Another than the paper's.
         fence: Where the hand may take the vehicle.
+        operator: Couples and chooses; unless given, is coupled and keeps to what the settings choose.
     """
 
     scenario: Scenario
@@ -53,6 +55,7 @@ class Setup(NamedTuple):
     seed: int = 0
     controller: Controller | None = None
     fence: Fence | None = None
+    operator: Operator | None = None
 
 
 # Makes the hand that fits a mapping and a handle.
@@ -93,7 +96,7 @@ class VirtualFlight:
             link=link,
             device=device,
             settings=settings,
-            choices=beginning(settings).choices,
+            operator=setup.operator or Steady(beginning(settings).choices),
             start_t=self.vehicle.t,
             arm=arm,
         )

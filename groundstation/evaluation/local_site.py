@@ -13,8 +13,8 @@ from groundstation.config import Settings
 from groundstation.evaluation.channel_ends import GroundEnd, Link
 from groundstation.evaluation.coupling import Coupling
 from groundstation.evaluation.hands import CENTRE, Hand
+from groundstation.evaluation.operator import Operator
 from groundstation.messages import Phase
-from groundstation.pilot.choices import Choices
 from groundstation.pilot.pilot import Inputs, Memory, Pilot
 
 # Of this hand and this handle, always.
@@ -45,12 +45,13 @@ class LocalSite:
         link: To the vehicle.
         device: The handle.
         settings: Those of the pilot.
-        choices: The operator's, all the flight long.
+        operator: Couples and chooses.
         start_t: When it begins, s.
         arm: Moves the handle where the hand wants it; a person's unless given.
 
     Attributes:
         pilot: As given.
+        operator: As given.
         t: Of the tick that comes next, s.
         end: The ground's end of the link.
         coupling: Of hand and vehicle.
@@ -69,11 +70,11 @@ class LocalSite:
         link: Link,
         device: DeviceInfo,
         settings: Settings,
-        choices: Choices,
+        operator: Operator,
         start_t: float,
         arm: Mover | None = None,
     ) -> None:
-        self.pilot, self._hand, self._choices = pilot, hand, choices
+        self.pilot, self._hand, self.operator = pilot, hand, operator
         self._workspace = device.workspace
         self._arm, self._arm_state = arm or Arm(), ArmState()
         self._wanted = CENTRE
@@ -106,7 +107,8 @@ class LocalSite:
         if due:
             self._decide(t)
         phase = self.coupling.phase
-        inputs = Inputs(dt, phase, _CUT, handle, end.sample, age, end.round_trip, end.loss, self._choices)
+        choices = self.operator.choices()
+        inputs = Inputs(dt, phase, _CUT, handle, end.sample, age, end.round_trip, end.loss, choices)
         self._memory, outputs = self.pilot.step(self._memory, inputs)
         self.outputs = outputs
         if due and phase is not Phase.DISENGAGED:
@@ -124,6 +126,6 @@ class LocalSite:
     def _decide(self, t: float) -> None:
         """Look at link and coupling, and at the vehicle while it follows the hand."""
         self.end.measure(t)
-        self.coupling.update(t, self.handle, self.outputs.fault)
+        self.coupling.update(t, self.handle, self.outputs.fault, wanted=self.operator.couples())
         engaged = self.coupling.phase is Phase.ENGAGED
         self._wanted = self._hand.decide(t, self.end.sample) if engaged else CENTRE

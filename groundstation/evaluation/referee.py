@@ -41,7 +41,7 @@ class Referee:
     @property
     def target_held(self) -> bool:
         """The vehicle has been kept at the target for long enough: what is left is to land."""
-        return self._director.stage in {Stage.RETURNING, Stage.DONE}
+        return self._director.at_the_end or self._director.stage is Stage.DONE
 
     def __call__(self, sample: Sample) -> None:
         """Take note of a sample while there is something to fly."""

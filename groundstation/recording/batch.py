@@ -51,9 +51,14 @@ def text(field: bytes) -> str:
 
 
 class Batch:
-    """Records of one stretch of time, in the order they came, topic by topic."""
+    """Records of one stretch of time, in the order they came, topic by topic.
+
+    Attributes:
+        arrays: The same by topic's name, as `groundstation.recording.columns.rows_in` makes them, once for all.
+    """
 
     def __init__(self) -> None:
+        self.arrays: dict[str, Any] = {}
         self._records: dict[str, list[Record]] = {topic.name: [] for topic in TOPICS}
 
     def of(self, topic: Topic[R]) -> list[R]:

@@ -23,10 +23,16 @@ Overrides = dict[EntityPathLike, VisualizerLike | Iterable[VisualizerLike]]
 _TRAILS: Overrides = {
     entities.VEHICLE_TRAIL: _WHOLE_WAY,
     entities.HAND_TRAIL: _WHOLE_WAY,
+    entities.INCIDENTS: _WHOLE_WAY,
 }
 _AXIS = rrb.TimeAxis(link=rrb.components.LinkAxis.LinkToGlobal)
+# Rerun shows them by their paths' alphabet.
+_HAPPENED = (lanes.ALERT, lanes.GUARD, lanes.MODE, lanes.PHASE, lanes.STAGE, lanes.VEHICLE)
 # The velocities share their colours: one legend is enough.
 _FIRST = "Forward velocity"
+# From above: what is shown around a mission, m, and how wide and deep an eye sees, m a metre of its height.
+_AROUND_M = 4.0
+_SEEN_WIDE, _SEEN_DEEP = 1.5, 0.9
 _BACKGROUND: palette.Colour = (20, 23, 28)
 _GRID = (120, 128, 140, 90)
 
@@ -38,18 +44,18 @@ def blueprint(mission: Mission | None) -> rrb.Blueprint:
         mission: What the camera must have in view; None for free flight.
     """
     left = rrb.Vertical(
-        rrb.Tabs(_scene(mission), _chase(), active_tab=0),
+        rrb.Tabs(_scene(mission), _chase(), _above(mission), active_tab=0),
         rrb.Tabs(
             _events(), rrb.TextDocumentView(origin=entities.ABOUT, name="About this flight"), active_tab=0
         ),
         row_shares=[5, 2],
     )
-    right = rrb.Tabs(_flight(), _hand(), _feel(), _machinery(), active_tab=0)
+    right = rrb.Tabs(_flight(), _velocity(), _hand(), _feel(), _machinery(), active_tab=0)
     return rrb.Blueprint(
         rrb.Vertical(
             rrb.Horizontal(left, right, column_shares=[5, 6]),
-            _states("Mode, hand, mission, vehicle", lanes.MODE, lanes.PHASE, lanes.STAGE, lanes.VEHICLE),
-            row_shares=[10, 3],
+            _states("What happened", *_HAPPENED),
+            row_shares=[20, 8],
         ),
         rrb.BlueprintPanel(state="collapsed"),
         rrb.SelectionPanel(state="collapsed"),
@@ -67,7 +73,21 @@ def _scene(mission: Mission | None) -> rrb.Spatial3DView:
         look_target=tuple(middle),
         eye_up=(0, 0, 1),
     )
-    return _space(f"Scene (force arrow: {entities.ARROW_M_PER_N} m a newton)", eye)
+    return _space(f"Scene (force: {entities.ARROW_M_PER_N} m/N)", eye)
+
+
+def _above(mission: Mission | None) -> rrb.Spatial3DView:
+    low, high = extent(mission)
+    middle = (low + high) / 2
+    wide, deep = (high - low)[:2] + _AROUND_M
+    height = max(wide / _SEEN_WIDE, deep / _SEEN_DEEP)
+    eye = rrb.EyeControls3D(
+        kind=rrb.Eye3DKind.Orbital,
+        position=(middle[0], middle[1], middle[2] + height),
+        look_target=tuple(middle),
+        eye_up=(0, 1, 0),
+    )
+    return _space("From above", eye)
 
 
 def _chase() -> rrb.Spatial3DView:
@@ -113,13 +133,28 @@ def _plot(
         contents=list(paths),
         name=name,
         axis_x=_AXIS,
-        plot_legend=rrb.PlotLegend(rrb.Corner2D.LeftTop, visible=legend),
+        plot_legend=rrb.PlotLegend(rrb.Corner2D.RightTop, visible=legend),
         overrides=overrides,
     )
 
 
 def _flight() -> rrb.Grid:
-    velocities = [
+    delay = (schema.STATE_AGE, schema.ROUND_TRIP, schema.HANDLE_AGE)
+    return rrb.Grid(
+        _plot("Position error p̃, m (yaw, rad: purple)", schema.ERROR.path, legend=False),
+        _plot("To the target, m", schema.TARGET_DISTANCE.path, legend=False),
+        _plot("Force on the hand, N", schema.HANDLE_FORCE.path),
+        _plot("How hard, and the limit, N", schema.FORCE_SIZE.path),
+        *_velocities()[:2],
+        _plot("Delay, s", *(quantity.path for quantity in delay)),
+        _plot("Clearance, and the margin, m", schema.CLEARANCE.path, schema.MARGIN.path),
+        grid_columns=2,
+        name="Flight",
+    )
+
+
+def _velocities() -> list[rrb.TimeSeriesView]:
+    return [
         _plot(f"{title}, {reference.unit}", reference.path, executed.path, legend=title == _FIRST)
         for title, reference, executed in zip(
             (_FIRST, "Left velocity", "Up velocity", "Yaw rate"),
@@ -128,15 +163,15 @@ def _flight() -> rrb.Grid:
             strict=True,
         )
     ]
-    delay = (schema.STATE_AGE, schema.ROUND_TRIP, schema.HANDLE_AGE, schema.SILENCE)
+
+
+def _velocity() -> rrb.Grid:
     return rrb.Grid(
-        *velocities,
-        _plot("Position error, m", schema.ERROR.path),
-        _plot("Force on the hand, N", schema.HANDLE_FORCE.path),
-        _plot("Delay, s", *(quantity.path for quantity in delay)),
-        _plot("Clearance and way to the target, m", schema.CLEARANCE.path, schema.TARGET_DISTANCE.path),
+        *_velocities(),
+        _guarded("Forward: asked (orange), guarded (red), flown", 0),
+        _guarded("Left: asked (orange), guarded (red), flown", 1),
         grid_columns=2,
-        name="Flight",
+        name="Velocity",
     )
 
 
@@ -146,7 +181,7 @@ def _hand() -> rrb.Grid:
         _plot("Handle's velocity, m/s", schema.HANDLE_VELOCITY.path),
         _plot("Force on the hand, N", schema.HANDLE_FORCE.path),
         _plot("Force cue of equation (5), N", schema.FORCE_CUE.path),
-        _plot("p_h: where the hand wants the drone, m", schema.P_H.path),
+        _plot("p_h: where the hand wants it, m", schema.P_H.path),
         _plot("Drone's position, m", schema.POSITION.path),
         grid_columns=2,
         name="Hand",
@@ -157,14 +192,12 @@ def _feel() -> rrb.Vertical:
     plots = rrb.Grid(
         _plot("Force by cue, N", schema.CUE_SIZES.path),
         _plot("Energy of the hand's port, J", schema.HANDLE_ENERGY.path),
-        _guarded("Forward, m/s: asked for (orange), guarded (red), flown (blue)", 0),
-        _guarded("Left, m/s: asked for (orange), guarded (red), flown (blue)", 1),
         _plot("K₁ in effect, 1/s, and phase margin, rad", schema.K1.path, schema.PHASE_MARGIN.path),
         _plot("Round trip, s, and what it leaves, share", schema.RECKONED.path, schema.SHARES.path),
         grid_columns=2,
     )
-    states = _states("Guard, handle, preset", lanes.GUARD, lanes.MAPPING, lanes.PRESET)
-    return rrb.Vertical(plots, states, row_shares=[7, 2], name="Feel")
+    states = _states("Compensation, handle, preset", lanes.COMPENSATION, lanes.MAPPING, lanes.PRESET)
+    return rrb.Vertical(plots, states, row_shares=[5, 2], name="Feel")
 
 
 def _guarded(name: str, axis: int) -> rrb.TimeSeriesView:
@@ -184,16 +217,14 @@ def _guarded(name: str, axis: int) -> rrb.TimeSeriesView:
 def _machinery() -> rrb.Vertical:
     plots = rrb.Grid(
         _plot("Servo's lateness, s", schema.SERVO_LATE.path),
-        _plot("Servo's longest reads, writes, steps, s", schema.SERVO_TIME.path),
-        _plot("Frames lost, share", schema.LOSS.path),
+        _plot("Servo's longest parts of a tick, s", schema.SERVO_TIME.path),
+        _plot("Frames lost, share, and silence, s", schema.LOSS.path, schema.SILENCE.path),
         _plot("Setpoint frames at the gate", schema.GATE.path),
         _plot("Seen by the vehicle's sensors, m", schema.RANGES.path),
-        _plot("Push that the model does not know, m/s²", schema.PUSH.path),
+        _plot("Push the model does not know, m/s²", schema.PUSH.path),
         _plot("Battery, share", schema.BATTERY.path),
         _plot("Time between heartbeats, s", f"{schema.PROCESSES}/**"),
         grid_columns=2,
     )
-    states = _states(
-        "Device, setpoint stream, compensation", lanes.DEVICE_STATE, lanes.STREAM, lanes.COMPENSATION
-    )
-    return rrb.Vertical(plots, states, row_shares=[7, 2], name="Machinery")
+    states = _states("Device, setpoint stream", lanes.DEVICE_STATE, lanes.STREAM)
+    return rrb.Vertical(plots, states, row_shares=[5, 2], name="Machinery")

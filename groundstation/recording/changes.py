@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from enum import IntEnum
+from operator import attrgetter
 
 import numpy as np
 import rerun as rr
@@ -35,6 +36,12 @@ from groundstation.recording.item import Chunk, time_column
 _INFO, _WARNING = "INFO", "WARN"
 _LEVELS: dict[int, str] = {Severity.INFO: _INFO, Severity.WARNING: _WARNING, Severity.ALARM: "ERROR"}
 
+# All that becomes words here: a state whose fields are as before needs no look, and a thousand come a second.
+_PILOT_WORDS = (
+    "phase", "on_leash", "reason", "mapping", "fine", "clutched", "waiting", "preset", "guarding", "guarded_by",
+    "compensated",
+)  # fmt: skip
+
 Timed = tuple[float, str]
 
 
@@ -51,7 +58,7 @@ class Changes:
 
     def chunks(self, batch: Batch) -> Iterator[Chunk]:
         """Yield a batch's changes of state, an entity each."""
-        pilot = batch.of(PILOT_STATE)
+        pilot = _differing(batch.of(PILOT_STATE), _PILOT_WORDS)
         status = batch.of(VEHICLE_STATUS)
         states: tuple[tuple[lanes.Lane, Iterable[Timed]], ...] = (
             (lanes.PHASE, ((state.t, _phase(state)) for state in pilot)),
@@ -111,6 +118,19 @@ class Changes:
         columns = rr.TextLog.columns(text=list(texts), level=list(levels))
         # Whole milliseconds read well in a table.
         return Chunk(path, time_column(np.round(np.array(times) - self._start, 3)), columns)
+
+
+def _differing(states: Sequence[PilotState], fields: Sequence[str]) -> list[PilotState]:
+    """Return the states some of whose fields differ from the state's before, and the first."""
+    read = attrgetter(*fields)
+    found: list[PilotState] = []
+    before: object = None
+    for state in states:
+        now = read(state)
+        if now != before:
+            found.append(state)
+            before = now
+    return found
 
 
 def _word(kind: type[IntEnum], number: int) -> str:

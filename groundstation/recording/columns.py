@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from typing import Any
+from functools import cache
+from typing import Any, cast
 
 import numpy as np
 import numpy.typing as npt
@@ -36,8 +37,19 @@ Rows = npt.NDArray[np.void]
 
 def rows_of(records: Sequence[Record]) -> Rows:
     """Return records of one kind as one structured array, a row each, in one copy."""
-    kind: npt.DTypeLike = np.dtype(type(records[0]))
-    return np.frombuffer(b"".join(records), dtype=kind)
+    return np.frombuffer(b"".join(records), dtype=_kind(type(records[0])))
+
+
+def rows_in(batch: Batch, topic: Topic[Any]) -> Rows:
+    """Return the records of a topic in a batch as `rows_of`; the batch is complete and has some."""
+    if topic.name not in batch.arrays:
+        batch.arrays[topic.name] = rows_of(batch.of(topic))
+    return batch.arrays[topic.name]
+
+
+@cache
+def _kind(record: type[Record]) -> np.dtype[np.void]:
+    return cast("np.dtype[np.void]", np.dtype(record))
 
 
 def vehicle_rates(world: Numbers, yaw: Numbers) -> Numbers:
@@ -100,6 +112,7 @@ _NUMBERS: tuple[tuple[Topic[Any], tuple[tuple[Quantity, Callable[[Rows], Numbers
             (schema.HANDLE_POSITION, _with_yaw("position")),
             (schema.HANDLE_VELOCITY, _fields("velocity")),
             (schema.HANDLE_FORCE, _fields("force")),
+            (schema.HANDLE_CLOCK, _fields("device_t", "tick")),
         ),
     ),
     (
@@ -107,6 +120,7 @@ _NUMBERS: tuple[tuple[Topic[Any], tuple[tuple[Quantity, Callable[[Rows], Numbers
         (
             *((quantity, _reference(axis)) for axis, quantity in enumerate(schema.REFERENCES)),
             (schema.HANDLE_AGE, lambda rows: _where(rows["active"] != 0, rows["t"] - rows["handle_t"])),
+            (schema.SETPOINT_NUMBER, _fields("number")),
         ),
     ),
     (
@@ -172,6 +186,7 @@ _NUMBERS: tuple[tuple[Topic[Any], tuple[tuple[Quantity, Callable[[Rows], Numbers
         (
             (schema.SERVO_RATE, _fields("rate")),
             (schema.SERVO_LATE, _fields("late_p50", "late_p99", "late_max")),
+            (schema.SERVO_RUN, _fields("run_p50", "run_p99")),
             (schema.SERVO_TIME, _fields("read", "write", "step")),
             (schema.SERVO_TICKS, _fields("ticks", "missed")),
         ),
@@ -205,10 +220,9 @@ def number_chunks(batch: Batch, start: float) -> Iterator[Chunk]:
         start: Monotonic time that is 0 on the timeline, s.
     """
     for topic, quantities in _NUMBERS:
-        records = batch.of(topic)
-        if not records:
+        if not batch.of(topic):
             continue
-        rows = rows_of(records)
+        rows = rows_in(batch, topic)
         times = time_column(rows["t"] - start)
         for quantity, values in quantities:
             numbers = values(rows)
@@ -230,6 +244,7 @@ class Heartbeats:
 
     def __init__(self) -> None:
         self._last: dict[str, float] = {}
+        self._numbers: dict[str, int] = {}
 
     def chunks(self, batch: Batch, start: float) -> Iterator[Chunk]:
         """Yield a batch's heartbeats, an entity a process; each process's first only starts the count."""
@@ -239,27 +254,44 @@ class Heartbeats:
         for role, heard in beats.items():
             times = np.array([self._last.get(role, heard[0].t), *(beat.t for beat in heard)])
             self._last[role] = heard[-1].t
-            yield Chunk(
-                schema.heartbeat(role).path,
-                time_column(times[1:] - start),
-                rr.Scalars.columns(scalars=np.diff(times)),
-            )
+            column = time_column(times[1:] - start)
+            yield Chunk(schema.heartbeat(role).path, column, rr.Scalars.columns(scalars=np.diff(times)))
+            if heard[-1].pid != self._numbers.get(role):
+                self._numbers[role] = heard[-1].pid
+                number = rr.Scalars.columns(scalars=np.array([float(heard[-1].pid)]))
+                yield Chunk(schema.process_number(role).path, time_column(times[-1:] - start), number)
 
 
-class Buttons:
-    """The handle's buttons, a row only when one is pressed or let go."""
+class OnChange:
+    """What seldom changes: a row only when it does."""
 
     def __init__(self) -> None:
-        self._last = -1.0
+        self._last: dict[str, Numbers] = {}
 
     def chunks(self, batch: Batch, start: float) -> Iterator[Chunk]:
-        """Yield a batch's changes."""
-        if not (handles := batch.of(HANDLE)):
-            return
-        rows = rows_of(handles)
-        buttons = rows["buttons"].astype(np.float64)
-        changed = np.diff(buttons, prepend=self._last) != 0
-        self._last = buttons[-1]
-        if changed.any():
-            times = time_column(rows["t"][changed] - start)
-            yield Chunk(schema.HANDLE_BUTTONS.path, times, rr.Scalars.columns(scalars=buttons[changed]))
+        """Yield a batch's changes, an entity each."""
+        for topic, quantities in _SELDOM:
+            if not batch.of(topic):
+                continue
+            rows = rows_in(batch, topic)
+            for quantity, values in quantities:
+                numbers = values(rows).reshape(len(rows), -1)
+                before = np.vstack(
+                    (self._last.get(quantity.path, np.full(numbers.shape[1], np.nan)), numbers[:-1])
+                )
+                self._last[quantity.path] = numbers[-1]
+                changed = np.logical_or.reduce(numbers != before, axis=1)
+                if changed.any():
+                    times = time_column(rows["t"][changed] - start)
+                    yield Chunk(quantity.path, times, rr.Scalars.columns(scalars=numbers[changed]))
+
+
+_SELDOM: tuple[tuple[Topic[Any], tuple[tuple[Quantity, Callable[[Rows], Numbers]], ...]], ...] = (
+    (
+        HANDLE,
+        ((schema.HANDLE_BUTTONS, _fields("buttons")), (schema.HANDLE_READY, _fields("present", "homed"))),
+    ),
+    (PILOT_STATE, ((schema.CENTRED, _fields("centred")),)),
+    (VEHICLE_STATUS, ((schema.SYSTEM_ID, _fields("system_id")),)),
+    (SERVO_REPORT, ((schema.REALTIME, _fields("realtime")),)),
+)

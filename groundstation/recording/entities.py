@@ -28,6 +28,7 @@ PREDICTED = "/world/predicted"
 STOP = "/world/stop"
 PROSPECT = "/world/prospect"
 ECHOES = "/world/echoes"
+INCIDENTS = "/world/incidents"
 # Length of the arrow that shows the force on the hand, m a newton.
 ARROW_M_PER_N = 0.25
 
@@ -55,4 +56,5 @@ SCENE: tuple[tuple[str, str], ...] = (
     (STOP, "where it would come to rest from there with a centred handle, while engaged"),
     (PROSPECT, "a line from where it is seen through both, while engaged"),
     (ECHOES, "what the vehicle's own distance sensors see, as points"),
+    (INCIDENTS, "collisions and alarms, as points where the vehicle was then"),
 )

@@ -90,6 +90,7 @@ STAGE = Lane(
         (Stage.ROUTE.value, Tone.WORKING),
         (Stage.HOLDING.value, Tone.GOOD),
         (Stage.RETURNING.value, Tone.GOOD),
+        (Stage.FREE.value, Tone.WORKING),
         (Stage.DONE.value, Tone.IDLE),
     ),
 )
@@ -125,6 +126,12 @@ COMPENSATION = Lane(
     "Whether the vehicle's dynamics are compensated",
     (("off", Tone.IDLE), ("on", Tone.GOOD)),
 )
+QUIET, WARNING, COLLISION, ALARM = "quiet", "warning", "collision", "alarm"
+ALERT = Lane(
+    "/state/alert",
+    "What went wrong: each warning, collision and alarm for half a second",
+    ((QUIET, Tone.IDLE), (WARNING, Tone.WARNING), (COLLISION, Tone.FAULT), (ALARM, Tone.FAULT)),
+)
 LANES: tuple[Lane, ...] = (
-    PHASE, MODE, STREAM, VEHICLE, DEVICE_STATE, STAGE, MAPPING, PRESET, GUARD, COMPENSATION,
+    ALERT, PHASE, MODE, STREAM, VEHICLE, DEVICE_STATE, STAGE, MAPPING, PRESET, GUARD, COMPENSATION,
 )  # fmt: skip

@@ -1,9 +1,10 @@
-"""The live viewer that `--rerun` asks for: a window where there is a display, else a page for the browser."""
+"""The live viewer: one that `--rerun` starts, a window or a page for the browser, or one that runs already."""
 
 from __future__ import annotations
 
 import atexit
 import os
+import re
 import socket
 import subprocess
 import sys
@@ -17,6 +18,10 @@ from groundstation.recording.program import ENVIRONMENT, LOOPBACK, program
 _HOST = "127.0.0.1"
 _START_S = 15.0
 _POLL_S = 0.05
+_ANSWER_S = 2.0
+# Rerun's own port, where none is named.
+_PORT = 9876
+_ADDRESS = re.compile(r"(?:rerun(?:\+https?)?://)?(\[[0-9a-fA-F:]+\]|[\w.-]+)(?::(\d{1,5}))?(?:/proxy)?/?")
 # What a viewer keeps of a long flight; older data leave it, not the file.
 _MEMORY = ("--memory-limit", "2GB", "--server-memory-limit", "256MB")
 
@@ -62,6 +67,29 @@ def start_viewer(environment: Mapping[str, str] = os.environ) -> str:
     if not window:
         sys.stderr.write(f"Live view: {page_address(page_port, url)}\n")
     return url
+
+
+def find_viewer(address: str) -> str:
+    """Return the URL to stream to of a viewer that runs already.
+
+    Args:
+        address: `HOST`, `HOST:PORT`, or a URL as the viewer tells it, `rerun+http://HOST:PORT/proxy`.
+
+    Raises:
+        InputError: That is no address, or nothing answers there; a stream would never find it later.
+    """
+    found = _ADDRESS.fullmatch(address)
+    port = int(found[2] or _PORT) if found else 0
+    if found is None or not 0 < port < 65_536:
+        raise InputError(f"--viewer {address}: is no address; use HOST:PORT, such as {_HOST}:{_PORT}.")
+    try:
+        socket.create_connection((found[1].strip("[]"), port), _ANSWER_S).close()
+    except OSError as error:
+        raise InputError(
+            f"--viewer {address}: nothing answers there ({error.strerror or error}); start a viewer with "
+            f"'rerun --bind {_HOST} --port {port}', or let --rerun do it."
+        ) from error
+    return f"rerun+http://{found[1]}:{port}/proxy"
 
 
 def page_address(page_port: int, url: str) -> str:

@@ -11,7 +11,7 @@ import rerun as rr
 from groundstation.messages import HANDLE, PILOT_STATE, VEHICLE_STATE, Phase
 from groundstation.recording import entities
 from groundstation.recording.batch import Batch
-from groundstation.recording.columns import Rows, rows_of
+from groundstation.recording.columns import Rows, rows_in, rows_of
 from groundstation.recording.item import Chunk, Numbers, time_column
 
 # States in a strip: short enough to grow smoothly, long enough to keep a long flight's trail cheap.
@@ -28,7 +28,7 @@ class Trail:
 
     def __init__(self, path: str) -> None:
         self._path = path
-        self._points: list[Numbers] = []
+        self._points: list[list[float]] = []
 
     def lift(self) -> None:
         """End the line here; the next point starts a new one."""
@@ -42,17 +42,22 @@ class Trail:
             points: (n, 3), world, m.
         """
         ends: list[float] = []
-        strips: list[Numbers] = []
-        for t, point in zip(times, points, strict=True):
-            if self._points and np.max(np.abs(point - self._points[-1])) < _STILL_M:
+        strips: list[list[list[float]]] = []
+        for t, point in zip(times.tolist(), points.tolist(), strict=True):
+            if self._points and _near(point, self._points[-1]):
                 continue
             self._points.append(point)
             if len(self._points) > _STRIP:
                 ends.append(t)
-                strips.append(np.array(self._points))
+                strips.append(self._points.copy())
                 del self._points[:-1]
         if strips:
-            yield Chunk(self._path, time_column(np.array(ends)), rr.LineStrips3D.columns(strips=strips))
+            lines = rr.LineStrips3D.columns(strips=np.array(strips, np.float32))
+            yield Chunk(self._path, time_column(np.array(ends)), lines)
+
+
+def _near(one: Sequence[float], other: Sequence[float]) -> bool:
+    return all(abs(a - b) < _STILL_M for a, b in zip(one, other, strict=True))
 
 
 class Motion:
@@ -75,12 +80,12 @@ class Motion:
         """Yield a batch's motion."""
         if states := [state for state in batch.of(VEHICLE_STATE) if state.valid]:
             yield from self._vehicle(rows_of(states))
-        if handles := batch.of(HANDLE):
-            rows = rows_of(handles)
+        if batch.of(HANDLE):
+            rows = rows_in(batch, HANDLE)
             self._force_t = np.concatenate((self._force_t[-1:], rows["t"]))
             self._force = np.concatenate((self._force[-1:], rows["force"]))
-        if pilot := batch.of(PILOT_STATE):
-            yield from self._hand(rows_of(pilot))
+        if batch.of(PILOT_STATE):
+            yield from self._hand(rows_in(batch, PILOT_STATE))
 
     def _vehicle(self, rows: Rows) -> Iterator[Chunk]:
         times, position = rows["t"] - self._start, rows["position"]
@@ -89,7 +94,7 @@ class Motion:
         )
         yield Chunk(entities.VEHICLE_POSE, time_column(times), pose)
         ground = position[:, :3] * (1.0, 1.0, 0.0)
-        plumbs = list(np.stack((position[:, :3], ground), axis=1))
+        plumbs = _strips(position[:, :3], ground)
         yield Chunk(entities.PLUMB, time_column(times), rr.LineStrips3D.columns(strips=plumbs))
         yield from self._vehicle_trail.add(times, position[:, :3])
 
@@ -102,13 +107,13 @@ class Motion:
         shown = rows[engaged]
         hand, seen = shown["p_h"][:, :3], (shown["p_h"] - shown["error"])[:, :3]
         force = self._world_force(shown) * entities.ARROW_M_PER_N
-        leashes = list(np.stack((seen, hand), axis=1))
+        leashes = _strips(seen, hand)
         yield Chunk(entities.HAND, column, rr.Points3D.columns(positions=hand).partition(lengths))
         yield Chunk(entities.LEASH, column, rr.LineStrips3D.columns(strips=leashes).partition(lengths))
         arrows = rr.Arrows3D.columns(origins=seen, vectors=force).partition(lengths)
         yield Chunk(entities.FORCE_ARROW, column, arrows)
         predicted, stop = shown["predicted"][:, :3], shown["stop"]
-        prospects = list(np.stack((seen, predicted, stop), axis=1))
+        prospects = _strips(seen, predicted, stop)
         for path, points in ((entities.PREDICTED, predicted), (entities.STOP, stop)):
             yield Chunk(path, column, rr.Points3D.columns(positions=points).partition(lengths))
         yield Chunk(entities.PROSPECT, column, rr.LineStrips3D.columns(strips=prospects).partition(lengths))
@@ -125,6 +130,11 @@ class Motion:
         cosine, sine = np.cos(turn), np.sin(turn)
         x, y = force[:, 0], force[:, 1]
         return np.column_stack((cosine * x - sine * y, sine * x + cosine * y, force[:, 2]))
+
+
+def _strips(*points: Numbers) -> npt.NDArray[np.float32]:
+    """Return a strip a row through points, (n, 3) each, as one (n, points, 3) array: Rerun loops over lists."""
+    return np.stack(points, axis=1, dtype=np.float32)
 
 
 def quaternions(roll: Numbers, pitch: Numbers, yaw: Numbers) -> npt.NDArray[np.float64]:

@@ -57,6 +57,23 @@ HANDLE_POSITION = Quantity(
 )
 HANDLE_VELOCITY = Quantity("/handle/velocity", _AXES, "m/s", "servo", "Handle's velocity, handle frame")
 HANDLE_BUTTONS = Quantity("/handle/buttons", ("buttons",), "bits", "on change", "One bit a button")
+HANDLE_READY = Quantity(
+    "/handle/ready",
+    ("present", "homed"),
+    "flag",
+    "on change",
+    "Whether samples come, and know where they are",
+)
+HANDLE_CLOCK = Quantity(
+    "/handle/clock",
+    ("device time", "tick"),
+    "s, count",
+    "servo",
+    "The device's own time of the sample; servo's tick",
+)
+CENTRED = Quantity(
+    "/handle/centred", ("centred",), "flag", "on change", "Near enough to its centre to engage"
+)
 HANDLE_FORCE = Quantity("/handle/force", _AXES, "N", "servo", "Force rendered on the hand, handle frame")
 HANDLE_ENERGY = Quantity(
     "/handle/energy",
@@ -174,6 +191,9 @@ ANSWERED = Quantity(
     "as given",
     "Answers: of which command, its `CommandKind`, and 1 where it was done, 0 where refused",
 )
+SYSTEM_ID = Quantity(
+    "/vehicle/system_id", ("system id",), "count", "on change", "The vehicle's own in MAVLink"
+)
 BOOT_TIME = Quantity(
     "/vehicle/boot_time", ("boot time",), "s", "telemetry", "Vehicle's own clock at the state"
 )
@@ -204,6 +224,7 @@ RECKONED = Quantity(
     "/delay/reckoned", ("reckoned",), "s", "50 Hz", "Round trip that the controller reckons with"
 )
 SILENCE = Quantity("/delay/silence", ("silence",), "s", "10 Hz", "Since the vehicle's last frame")
+SETPOINT_NUMBER = Quantity("/setpoint/number", ("number",), "count", "50 Hz", "Of the setpoint")
 HANDLE_AGE = Quantity("/delay/handle_age", ("handle",), "s", "50 Hz", "From handle sample to active setpoint")
 
 LOSS = Quantity(
@@ -218,6 +239,12 @@ HEALTH_BITS = Quantity(
 
 SERVO_RATE = Quantity("/servo/rate", ("rate",), "Hz", "2 Hz", "Ticks a second in the last window")
 SERVO_LATE = Quantity("/servo/lateness", ("p50", "p99", "largest"), "s", "2 Hz", "Lateness of a tick's start")
+SERVO_RUN = Quantity(
+    "/servo/lateness_so_far", ("p50", "p99"), "s", "2 Hz", "The same since the servo's start"
+)
+REALTIME = Quantity(
+    "/servo/realtime", ("granted",), "flag", "on change", "The system grants real-time priority"
+)
 SERVO_TIME = Quantity(
     "/servo/duration", ("read", "write", "step"), "s", "2 Hz", "Longest time each part took"
 )
@@ -233,19 +260,37 @@ LEGS = Quantity("/mission/legs", ("flown", "of"), "legs", "mission", "How far al
 COLLISIONS = Quantity("/mission/collisions", ("collisions",), "contacts", "mission", "With obstacles, so far")
 
 QUANTITIES: tuple[Quantity, ...] = (
-    HANDLE_POSITION, HANDLE_VELOCITY, HANDLE_FORCE, HANDLE_ENERGY, HANDLE_BUTTONS,
+    HANDLE_POSITION, HANDLE_VELOCITY, HANDLE_FORCE, HANDLE_ENERGY, HANDLE_BUTTONS, HANDLE_READY,
+    HANDLE_CLOCK, CENTRED, SETPOINT_NUMBER,
     P_H, P_H_RATE, ERROR, V_REF, V_SAFE, V_C, K1, PHASE_MARGIN, SHARES,
     FORCE_CUE, ENVIRONMENT_CUE, MISMATCH_CUE, GUARD_CUE, DAMPING_CUE, CUE_SIZES, CUES_ON,
     PREDICTED, PREDICTED_VELOCITY, STOP, PUSH,
     *REFERENCES, *EXECUTED,
-    POSITION, VELOCITY, ATTITUDE, RAW_ATTITUDE, RAW_RATES, BOOT_TIME, BATTERY, VOLTAGE, HEALTH_BITS,
+    POSITION, VELOCITY, ATTITUDE, RAW_ATTITUDE, RAW_RATES, SYSTEM_ID, BOOT_TIME, BATTERY, VOLTAGE, HEALTH_BITS,
     RING, RANGES, RANGE_LIMIT,
     STATE_AGE, HANDLE_AGE, ROUND_TRIP, RECKONED, SILENCE,
     LOSS, GATE,
-    SERVO_RATE, SERVO_LATE, SERVO_TIME, SERVO_TICKS,
+    SERVO_RATE, SERVO_LATE, SERVO_RUN, REALTIME, SERVO_TIME, SERVO_TICKS,
     TARGET_DISTANCE, CLEARANCE, LEGS, COLLISIONS,
     COMMANDED, ANSWERED,
 )  # fmt: skip
+
+FORCE_SIZE = Quantity(
+    "/handle/force_size",
+    ("size", "limit"),
+    "N",
+    "50 Hz",
+    "Largest norm of the force on the hand in 20 ticks of the servo; what the device can render",
+)
+MARGIN = Quantity(
+    "/mission/margin",
+    ("margin",),
+    "m",
+    "mission",
+    "Least clearance that the guard keeps; NaN where it is off",
+)
+# Drawn from the others, the device and the settings, to be read beside them.
+GAUGES: tuple[Quantity, ...] = (FORCE_SIZE, MARGIN)
 
 PROCESSES = "/processes"
 # Of so many parts only the first and the last are named.
@@ -257,10 +302,17 @@ def heartbeat(role: str) -> Quantity:
     return Quantity(f"{PROCESSES}/{role}", (role,), "s", "10 Hz", "Time since the process's heartbeat before")
 
 
+def process_number(role: str) -> Quantity:
+    """Return the quantity of a process's number in the system."""
+    return Quantity(
+        f"/process_numbers/{role}", (role,), "count", "on change", "The process's number in the system"
+    )
+
+
 def tables() -> str:
     """Return the schema as Markdown tables, as `docs/logs.md` shows it."""
     lines = ["| entity | parts | unit | rows | meaning |", "|---|---|---|---|---|"]
-    for quantity in (*QUANTITIES, heartbeat("ROLE")):
+    for quantity in (*QUANTITIES, *GAUGES, heartbeat("ROLE"), process_number("ROLE")):
         parts = _listed(quantity.parts)
         lines.append(
             f"| `{quantity.path}` | {parts} | {quantity.unit} | {quantity.rate} | {quantity.meaning} |"

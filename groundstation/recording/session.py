@@ -12,10 +12,12 @@ from groundstation.recording.about import about_device, about_flight
 from groundstation.recording.batch import Batch
 from groundstation.recording.blueprint import blueprint
 from groundstation.recording.changes import Changes
-from groundstation.recording.columns import Buttons, Heartbeats, number_chunks
+from groundstation.recording.columns import Heartbeats, OnChange, number_chunks
 from groundstation.recording.echoes import Echoes
 from groundstation.recording.feed import LiveFeed
 from groundstation.recording.file import FlightFile, RecordingError
+from groundstation.recording.gauges import Gauges
+from groundstation.recording.incidents import Incidents
 from groundstation.recording.item import Item
 from groundstation.recording.motion import Motion
 from groundstation.recording.parts import part_path
@@ -28,6 +30,8 @@ Tell = Callable[[Severity, str], None]
 
 _LONGEST_START_S = 60.0
 _MB = 1e6
+# Of a record all but its time.
+_AFTER_TIME = 8
 
 
 def start_of(started: str, wall: datetime.datetime, monotonic: float) -> float:
@@ -55,9 +59,11 @@ class Translator:
         self._start = start
         self._changes = Changes(start)
         self._heartbeats = Heartbeats()
-        self._buttons = Buttons()
+        self._seldom = OnChange()
         self._motion = Motion(start, heading=run.settings.mapping.frame == "heading")
         self._echoes = Echoes(start)
+        self._gauges = Gauges(start, run.settings.shield)
+        self._incidents = Incidents(start)
         self._device = b""
 
     def opening(self) -> Iterator[Item]:
@@ -70,13 +76,15 @@ class Translator:
         """Yield a batch's items."""
         yield from number_chunks(batch, self._start)
         yield from self._heartbeats.chunks(batch, self._start)
-        yield from self._buttons.chunks(batch, self._start)
+        yield from self._seldom.chunks(batch, self._start)
         yield from self._changes.chunks(batch)
         yield from self._changes.texts(batch)
         yield from self._motion.chunks(batch)
         yield from self._echoes.chunks(batch)
+        yield from self._gauges.chunks(batch)
+        yield from self._incidents.chunks(batch)
         for report in batch.of(DEVICE_REPORT):
-            if report.present and (known := report.name + report.serial) != self._device:
+            if report.present and (known := bytes(report)[_AFTER_TIME:]) != self._device:
                 self._device = known
                 yield from about_device(self._run, report)
 

@@ -22,13 +22,16 @@ _COLOURS: dict[str, tuple[palette.Colour, ...]] = {
     schema.SHARES.path: (palette.GREEN, palette.PURPLE),
     schema.PHASE_MARGIN.path: (palette.YELLOW,),
     schema.TARGET_DISTANCE.path: (palette.GREEN,),
+    schema.FORCE_SIZE.path: (palette.SKY, palette.VERMILION),
+    schema.CLEARANCE.path: (palette.SKY,),
+    schema.MARGIN.path: (palette.VERMILION,),
     schema.CUE_SIZES.path: (palette.ORANGE, palette.SKY, palette.GREEN, palette.VERMILION, palette.GREY),
 }
 
 
 def static_styles() -> Iterator[Still]:
     """Yield names and colours of every quantity's series and every lane's states."""
-    for quantity in schema.QUANTITIES:
+    for quantity in (*schema.QUANTITIES, *schema.GAUGES):
         colours = _COLOURS.get(quantity.path) or tuple(islice(cycle(palette.PARTS), len(quantity.parts)))
         names = [_series_name(quantity, place) for place in range(len(quantity.parts))]
         yield Still(

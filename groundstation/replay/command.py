@@ -17,16 +17,16 @@ from typing import NamedTuple
 from groundstation.config import Settings
 from groundstation.errors import InputError
 from groundstation.evaluation.flight import VirtualFlight
+from groundstation.evaluation.local_site import handle_at
 from groundstation.evaluation.remote_site import TakeOffError
 from groundstation.evaluation.sample import Observer
 from groundstation.messages import Severity
-from groundstation.pilot.chooser import beginning
 from groundstation.pilot.guest import load_controller
-from groundstation.recording.live import has_display, start_viewer
+from groundstation.recording.live import find_viewer, has_display, start_viewer
 from groundstation.recording.session import Session
 from groundstation.replay.changes import channel_for, mission_for, settings_for
 from groundstation.replay.figures import Row, fingerprint, rows
-from groundstation.replay.flying import NotCoupledError, Pace, Replay, What
+from groundstation.replay.flying import RATE_HZ, NotCoupledError, Pace, Replay, What
 from groundstation.replay.records import ReplayRecorder
 from groundstation.review.choosing import chosen
 from groundstation.review.flight import Flight
@@ -34,7 +34,9 @@ from groundstation.review.recorded_series import recorded_series
 from groundstation.run import Run
 from groundstation.run_folder import new_run_id
 from groundstation.status_line import StatusLine
+from groundstation.training.director import Director
 from groundstation.training.mission import Mission
+from sim.environment.world import World
 
 EXIT_FAILED = 1
 _SLOWEST, _FASTEST = 1.0, 100.0
@@ -74,7 +76,11 @@ def run(asked: argparse.Namespace) -> int:
     what = What(settings, mission, load_controller(controller, settings), channel_for(asked), seed)
     began = time.monotonic()
     with ExitStack() as ending:
-        session = _session(asked, flight, settings, mission) if asked.out or asked.rerun else None
+        session = (
+            _session(asked, flight, settings, mission)
+            if asked.out or asked.rerun or asked.viewer is not None
+            else None
+        )
         if session:
             ending.callback(session.close)
         line = ending.enter_context(StatusLine(sys.stderr))
@@ -82,7 +88,7 @@ def run(asked: argparse.Namespace) -> int:
             replay = Replay(
                 flight,
                 what,
-                lambda virtual: [_shown(line), *_observers(asked, virtual, settings, session, ending)],
+                lambda virtual: [_shown(line), *_observers(asked, virtual, what, session, ending)],
             )
             replayed = replay.fly()
         except (TakeOffError, NotCoupledError) as error:
@@ -102,7 +108,9 @@ def run(asked: argparse.Namespace) -> int:
 def _session(asked: argparse.Namespace, flight: Flight, settings: Settings, mission: Mission) -> Session:
     """Return where the replay is recorded and shown."""
     url = ""
-    if asked.rerun:
+    if asked.viewer is not None:
+        url = find_viewer(asked.viewer)
+    elif asked.rerun:
         url = start_viewer()
     out = asked.out or Path(f".{flight.path.stem}.replay.rrd")
     run = Run(
@@ -129,13 +137,14 @@ def _session(asked: argparse.Namespace, flight: Flight, settings: Settings, miss
 def _observers(
     asked: argparse.Namespace,
     virtual: VirtualFlight,
-    settings: Settings,
+    what: What,
     session: Session | None,
     ending: ExitStack,
 ) -> Iterator[Observer]:
     """Yield who sees the replay, in the order of what they do."""
     if session:
-        recorder = ReplayRecorder(session, virtual.local.pilot, beginning(settings).choices)
+        director = Director(what.mission, World(what.mission.obstacle), virtual.vehicle.airframe.radius)
+        recorder = ReplayRecorder(session, virtual.local, director, handle_at(RATE_HZ))
         ending.callback(recorder.flush)
         yield recorder
     if asked.speed:

@@ -22,7 +22,8 @@ from sim.airframe import load_airframe
 from sim.conditions import BothWays
 from sim.scenario import ScenarioError
 
-_RATE_HZ = 1000.0
+# Of the servo and of the handle that is held.
+RATE_HZ = 1000.0
 # The coupling itself takes this at most, s.
 _COUPLING_S = 5.0
 
@@ -65,19 +66,20 @@ class Replay:
     def __init__(
         self, flight: Flight, what: What, observers: Callable[[VirtualFlight], Sequence[Observer]]
     ) -> None:
-        self._hand = recorded_hand(flight, handle_at(_RATE_HZ).workspace)
+        self._hand = recorded_hand(flight, handle_at(RATE_HZ).workspace, what.settings)
         heading = what.settings.mapping.frame == "heading"
         self._others: Sequence[Observer] = ()
         setup = Setup(
             scenario_of(what.mission, what.mission.wind),
             what.mission.takeoff_altitude_m,
             what.settings,
-            rate=_RATE_HZ,
+            rate=RATE_HZ,
             up=what.channel.up,
             down=what.channel.down,
             seed=what.seed,
             controller=what.controller,
             fence=what.mission.fence,
+            operator=self._hand,
         )
         try:
             radius = load_airframe(what.mission.vehicle.airframe).radius
@@ -91,7 +93,7 @@ class Replay:
 
     @property
     def seconds(self) -> float:
-        """How long the recorded hand was coupled."""
+        """From the recorded hand's first coupling to its last release."""
         return self._hand.seconds
 
     @property

@@ -58,7 +58,11 @@ def fill(parser: argparse.ArgumentParser) -> None:
     how.add_argument(
         "--speed", type=float, metavar="N", help="1 to 100 times life (default: as fast as it goes)"
     )
-    how.add_argument("--rerun", action="store_true", help="show it live in the Rerun viewer")
+    live = how.add_mutually_exclusive_group()
+    live.add_argument("--rerun", action="store_true", help="show it live in the Rerun viewer")
+    live.add_argument(
+        "--viewer", metavar="HOST:PORT", help="show it in a viewer that runs already, here or elsewhere"
+    )
     how.add_argument("--out", type=Path, metavar="FILE", help="write it as a recording (.rrd)")
     how.add_argument("--json", action="store_true", help="the result as one JSON object")
     how.add_argument("--logs", type=Path, default=Path("logs"), metavar="DIR", help="where recordings are")

@@ -4,13 +4,19 @@ from __future__ import annotations
 
 from typing import Any, cast
 
+from drivers.device import DeviceInfo
 from groundstation.bus import Bus
+from groundstation.evaluation.local_site import LocalSite
 from groundstation.evaluation.sample import Sample
 from groundstation.frames import body_from_world
 from groundstation.messages import (
+    DEVICE_REPORT,
+    MISSION_PROGRESS,
     VEHICLE_STATE,
     VEHICLE_STATUS,
+    DeviceReport,
     FlightMode,
+    MissionProgress,
     Phase,
     Record,
     Stream,
@@ -18,13 +24,12 @@ from groundstation.messages import (
     VehicleState,
     VehicleStatus,
 )
-from groundstation.pilot.choices import Choices
 from groundstation.pilot.inputs import Inputs
 from groundstation.pilot.outbox import Outbox, Tick
-from groundstation.pilot.pilot import Pilot
 from groundstation.pilot.sight import ZERO4, VehicleSample
 from groundstation.recording.batch import Batch
 from groundstation.recording.session import Session
+from groundstation.training.director import Director
 
 _BATCH_S = 1.0
 _STEP_S, _CUT = 0.02, False
@@ -56,15 +61,18 @@ class ReplayRecorder:
 
     Args:
         session: Where it goes.
-        pilot: That flies, to be asked where the vehicle would stop.
-        choices: The operator's.
+        local: The operator's side, to be asked what is chosen and where the vehicle would stop.
+        director: Judges how the mission goes.
+        device: The handle that is held.
     """
 
-    def __init__(self, session: Session, pilot: Pilot, choices: Choices) -> None:
-        self._session, self._pilot, self._choices = session, pilot, choices
+    def __init__(self, session: Session, local: LocalSite, director: Director, device: DeviceInfo) -> None:
+        self._session, self._local = session, local
+        self._director, self._device = director, device
         self._collector = Collector()
         self._outbox = Outbox(cast(Bus, self._collector))
         self._due = _BATCH_S
+        self._reported = False
 
     def __call__(self, sample: Sample) -> None:
         """Record a sample."""
@@ -73,12 +81,16 @@ class ReplayRecorder:
         hand = sample.handle
         self._outbox.handle(t, hand, outputs.force, present=True)
         self._outbox.setpoint(t, outputs.setpoint, t, active=coupled)
-        inputs = Inputs(_STEP_S, phase, _CUT, hand, _UNSEEN, sample.state_age, choices=self._choices)
-        tick = Tick(inputs, outputs, self._pilot.stop(outputs))
+        choices = self._local.operator.choices()
+        inputs = Inputs(_STEP_S, phase, _CUT, hand, _UNSEEN, sample.state_age, choices=choices)
+        tick = Tick(inputs, outputs, self._local.pilot.stop(outputs))
         self._outbox.pilot_state(t, tick, phase, "", centred=True)
         batch = self._collector.batch
         batch.add(VEHICLE_STATE, [_state(sample)])
         batch.add(VEHICLE_STATUS, [_status(sample, coupled=coupled)])
+        batch.add(MISSION_PROGRESS, [self._progress(sample, coupled=coupled)])
+        batch.add(DEVICE_REPORT, [] if self._reported else [_report(t, self._device)])
+        self._reported = True
         if t >= self._due:
             self._due = t + _BATCH_S
             self.flush()
@@ -87,6 +99,25 @@ class ReplayRecorder:
         """Hand over what has come since the last time."""
         batch, self._collector.batch = self._collector.batch, Batch()
         self._session.take(batch)
+
+    def _progress(self, sample: Sample, *, coupled: bool) -> MissionProgress:
+        x, y, z, _ = sample.p
+        self._director.vehicle(sample.t, (x, y, z), in_air=True, armed=True)
+        if coupled:
+            self._director.controller(sample.outputs.error[:3], sample.outputs.force)
+        return self._director.progress(sample.t)
+
+
+def _report(t: float, device: DeviceInfo) -> DeviceReport:
+    return DeviceReport(
+        t=t,
+        name=device.name.encode(),
+        renders=device.renders.encode(),
+        workspace=device.workspace,
+        force_limit=device.force_limit,
+        present=1,
+        homed=1,
+    )
 
 
 def _state(sample: Sample) -> VehicleState:

@@ -20,7 +20,7 @@ from groundstation.evaluation.sample import Sample
 from groundstation.evaluation.trial import scenario_of
 from groundstation.review.series import FlightSeries
 from groundstation.review.series_recorder import SeriesRecorder
-from groundstation.training.director import Director, Stage
+from groundstation.training.director import Director
 from groundstation.training.mission import Mission, find_mission, load_mission
 from sim.airframe import load_airframe
 from sim.environment.world import World
@@ -114,6 +114,6 @@ def fly(mission: Mission, settings: Settings, seed: int, watch: Watcher) -> Flow
         watch(director)
 
     flight = VirtualFlight(setup, lambda mapping, _: OperatorHand(operator, mapping), (observe,))
-    flight.fly(mission.criteria.time_limit_s, lambda: director.stage is Stage.RETURNING)
-    held = director.stage is Stage.RETURNING
+    flight.fly(mission.criteria.time_limit_s, lambda: director.at_the_end)
+    held = director.at_the_end
     return Flown(recorder.series(), mission, radius, len(flight.vehicle.collisions), held)

@@ -30,6 +30,7 @@ class Stage(Enum):
     ROUTE = "on the way"
     HOLDING = "holding at the target"
     RETURNING = "target held: land"
+    FREE = "flying free"
     DONE = "landed"
 
 
@@ -126,6 +127,11 @@ class Director:
         self.figures.error_count += 1
         self.figures.max_force = max(self.figures.max_force, math.hypot(*force))
 
+    @property
+    def at_the_end(self) -> bool:
+        """Whether nothing is left to fly to: the target was held, or there is none behind the route."""
+        return self.stage in {Stage.RETURNING, Stage.FREE}
+
     def target_distance(self) -> float:
         """Return the distance to the target, m; NaN without one."""
         if self.mission.target is None or self._last is None:
@@ -179,8 +185,10 @@ class Director:
             if math.dist(self.mission.route[self.leg], position) < 1.0:
                 self.leg += 1
             return
-        if target is None or self.stage is Stage.RETURNING:
-            self.stage = Stage.RETURNING
+        if target is None:
+            self.stage = Stage.FREE
+            return
+        if self.stage is Stage.RETURNING:
             return
         if math.dist(target.position, position) > target.radius:
             self._held_since, self.stage = None, Stage.ROUTE

@@ -1,4 +1,4 @@
-"""The one line above the instruments: the worst that is wrong now, else what to do next."""
+"""What is wrong now, in sentences, and else what to do next."""
 
 from __future__ import annotations
 
@@ -9,11 +9,10 @@ from groundstation.messages import MappingMode, Phase, Severity
 from groundstation.training.director import Stage
 from groundstation.tui import judge
 from groundstation.tui.acts import armed, in_air
+from groundstation.tui.alarms import Alert
 from groundstation.tui.frame import REPORT_STALE_S, STATUS_STALE_S, Frame
 from groundstation.tui.notes import from_event, words
 from groundstation.tui.rows import quantity, span_of_time
-
-Alert = tuple[Severity, str]
 
 _RECENT_S = 5.0
 _CONSEQUENCES = {
@@ -31,31 +30,24 @@ _BOUNDS = {
 }
 
 
-def worst(frame: Frame) -> Alert:
-    """Return the first of the alarms, else of the warnings, else what can be done next."""
-    alerts = list(_alerts(frame))
-    for wanted in (Severity.ALARM, Severity.WARNING):
-        for severity, text in alerts:
-            if severity is wanted:
-                return severity, text
-    return Severity.INFO, next_step(frame)
-
-
-def _alerts(frame: Frame) -> Iterator[Alert]:
+def alerts(frame: Frame) -> Iterator[Alert]:
+    """Yield all that is wrong, what explains the rest first; at the end what keeps the hand from being followed."""
     yield from _processes(frame)
     yield from _link(frame)
     yield from _state(frame)
     yield from _device(frame)
     yield from _said(frame)
+    if hampered := _hampered(frame):
+        yield Alert(Severity.INFO, "hampered", hampered)
 
 
 def _processes(frame: Frame) -> Iterator[Alert]:
     for role, consequence in _CONSEQUENCES.items():
         state = frame.states.get(role)
         if state == "ended":
-            yield Severity.ALARM, f"{role} has ended: {consequence}."
+            yield Alert(Severity.ALARM, role, f"{role} has ended: {consequence}.")
         elif state == "silent":
-            yield Severity.ALARM, f"{role} does not answer: {consequence}."
+            yield Alert(Severity.ALARM, role, f"{role} does not answer: {consequence}.")
 
 
 def _link(frame: Frame) -> Iterator[Alert]:
@@ -65,13 +57,17 @@ def _link(frame: Frame) -> Iterator[Alert]:
     age = judge.link_age(status, frame.now)
     severity = judge.link(status, frame.now, frame.run.settings.safety.link_warning_s)
     if severity is Severity.ALARM:
-        yield severity, f"Link lost: the vehicle has been silent for {span_of_time(age)}."
+        yield Alert(
+            severity, "link silent", f"Link lost: the vehicle has been silent for {span_of_time(age)}."
+        )
     elif severity is Severity.WARNING:
-        yield severity, f"The vehicle has been silent for {span_of_time(age)}."
+        yield Alert(severity, "link silent", f"The vehicle has been silent for {span_of_time(age)}.")
     elif frame.age(status) > STATUS_STALE_S:
-        yield Severity.WARNING, f"No word from the link process for {span_of_time(frame.age(status))}."
+        age_words = span_of_time(frame.age(status))
+        yield Alert(Severity.WARNING, "link report", f"No word from the link process for {age_words}.")
     if judge.battery(status.battery) is not Severity.INFO:
-        yield judge.battery(status.battery), f"Battery at {quantity(100 * status.battery, '%', 0)}: land."
+        charge = quantity(100 * status.battery, "%", 0)
+        yield Alert(judge.battery(status.battery), "battery", f"Battery at {charge}: land.")
 
 
 def _state(frame: Frame) -> Iterator[Alert]:
@@ -79,12 +75,10 @@ def _state(frame: Frame) -> Iterator[Alert]:
     if vehicle is None or not in_air(frame.snapshot):
         return
     if frame.age(vehicle) > frame.run.settings.safety.state_stale_s:
-        yield (
-            Severity.ALARM,
-            f"Position is {span_of_time(frame.age(vehicle))} old: do not trust map or force.",
-        )
+        old = span_of_time(frame.age(vehicle))
+        yield Alert(Severity.ALARM, "position", f"Position is {old} old: do not trust map or force.")
     elif not vehicle.valid:
-        yield Severity.ALARM, "The vehicle's position is not valid."
+        yield Alert(Severity.ALARM, "position", "The vehicle's position is not valid.")
 
 
 def _device(frame: Frame) -> Iterator[Alert]:
@@ -92,18 +86,21 @@ def _device(frame: Frame) -> Iterator[Alert]:
     if device is None:
         return
     if frame.age(device) > REPORT_STALE_S:
-        yield Severity.WARNING, f"No word from the haptic device for {span_of_time(frame.age(device))}."
+        silent = span_of_time(frame.age(device))
+        yield Alert(Severity.WARNING, "device", f"No word from the haptic device for {silent}.")
     elif not device.present:
-        yield Severity.ALARM, "The haptic device is gone: plug it in again; the hand is uncoupled."
+        text = "The haptic device is gone: plug it in again; the hand is uncoupled."
+        yield Alert(Severity.ALARM, "device", text)
     elif not device.homed:
-        yield Severity.WARNING, "The haptic device is not homed: move the handle through its whole range."
+        text = "The haptic device is not homed: move the handle through its whole range."
+        yield Alert(Severity.WARNING, "device", text)
 
 
 def _said(frame: Frame) -> Iterator[Alert]:
     recent = [from_event(event) for event in frame.snapshot.events[-8:]]
     for note in reversed([*recent, *frame.notes]):
         if note.severity is not Severity.INFO and frame.now - note.t < _RECENT_S:
-            yield note.severity, note.text
+            yield Alert(note.severity, note.text, note.text)
 
 
 def next_step(frame: Frame) -> str:
@@ -128,8 +125,6 @@ def next_step(frame: Frame) -> str:
 
 
 def _engaged_hint(frame: Frame) -> str:
-    if hampered := _hampered(frame):
-        return hampered
     mission, still = frame.run.mission, _standstill(frame)
     progress, target = frame.snapshot.progress, distance_to_target(frame)
     if progress is not None and words(progress.stage) == Stage.RETURNING.value and math.isfinite(target):

@@ -11,6 +11,7 @@ import importlib
 import signal
 import time
 from collections.abc import Callable, Iterable
+from dataclasses import replace
 from pathlib import Path
 from typing import ClassVar, cast
 
@@ -28,6 +29,8 @@ from groundstation.run import Run, write_run
 from groundstation.training.director import Director
 from groundstation.training.follower import MissionFollower
 from groundstation.tui.acts import ACTS, BY_NAME, URGENT, Act, Ask, coupled, in_air
+from groundstation.tui.alarms import Alarms
+from groundstation.tui.alerts import alerts
 from groundstation.tui.checks import red
 from groundstation.tui.choices import CHOICES, CHOICES_BY_NAME, PRESETS_EXPLAINED, Choice, Wishes
 from groundstation.tui.frame import Frame, Reader, Supervisor, workspace
@@ -43,7 +46,7 @@ from groundstation.tui.screens.flight import STEPS, FlightScreen
 from groundstation.tui.screens.help import Help
 from groundstation.tui.screens.page import Page
 from groundstation.tui.setting_list import Entry, changed, save
-from groundstation.tui.theme import THEME
+from groundstation.tui.theme import THEME, THEMES, next_theme
 from groundstation.tui.track import History, Track
 from groundstation.tui.viewer import Viewer
 from groundstation.tui.widgets.stick import YAW, stays
@@ -103,14 +106,15 @@ class FlightApp(App[int]):
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
         super().__init__()
-        self.register_theme(THEME)
+        for theme in THEMES:
+            self.register_theme(theme)
         self.theme = THEME.name
         self.hand = Hand()
         self._flight_run, self._reader, self._supervisor = run, console, supervisor
         self._stick, self._clock = stick, clock
         self._answers = Answers()
         self._wishes, self._guard = Wishes(), GuardWatch()
-        self._track, self._history = Track(), History()
+        self._track, self._history, self._alarms = Track(), History(), Alarms()
         self._snapshot = console.snapshot()
         self._started = self._snapshot.t
         self._next_poll = self._next_look = 0.0
@@ -154,9 +158,14 @@ class FlightApp(App[int]):
             self.notify(note.text, severity=severity, timeout=6.0, markup=False)
         stale_s = self._flight_run.settings.safety.state_stale_s
         if snapshot.vehicle is not None and snapshot.vehicle.valid:
-            self._track.add(snapshot.vehicle.position[0], snapshot.vehicle.position[1])
+            east, north, up, _ = snapshot.vehicle.position
+            self._track.add(east, north, up, snapshot.vehicle.t)
         self._history.add(snapshot, stale_s)
-        frame = self._latest = self._frame(snapshot)
+        frame = self._frame(snapshot)
+        alarms = self._alarms.look(alerts(frame), snapshot.t)
+        if self._alarms.rings(snapshot.t):
+            self.bell()
+        frame = self._latest = replace(frame, alarms=alarms, muted=self._alarms.muted)
         # What stands below a page is not seen, what stands below a dialog is.
         (self._page or self._flight).show(frame)
         if snapshot.t >= self._next_look:
@@ -212,6 +221,7 @@ class FlightApp(App[int]):
             notes=tuple(self._answers.notes),
             track=self._track,
             history=self._history,
+            figures=self._follower.director.figures if self._follower else None,
         )
 
     def _send_stick(self) -> None:
@@ -373,6 +383,20 @@ class FlightApp(App[int]):
         self.hand.centre()
         self.exit(code)
 
+    def action_acknowledge(self) -> None:
+        """Take all that is wrong as known: it is no longer reversed nor rung."""
+        if not self._alarms.acknowledge():
+            self.notify("Nothing new is wrong.", timeout=2.0)
+
+    def action_mute(self) -> None:
+        """Ring no bell, or ring it again."""
+        self._alarms.muted = not self._alarms.muted
+        self.notify(f"Bell {'off' if self._alarms.muted else 'on'}.", timeout=2.0)
+
+    def action_theme_next(self) -> None:
+        """Take the next theme: dark, light, high contrast."""
+        self.theme = next_theme(self.theme)
+
     def action_help(self) -> None:
         """Show the keys."""
         if not isinstance(self.screen, ModalScreen):
@@ -416,6 +440,11 @@ class FlightApp(App[int]):
         yield SystemCommand("Back to the flight (Esc)", "From any other screen.", self.action_fly)
         yield SystemCommand("Open the recording in the viewer", "After landing.", self.action_review)
         yield SystemCommand("Centre the stick (space)", "All axes at once.", self._flight.action_centre)
+        yield SystemCommand("Seen (enter)", "Take all that is wrong as known.", self.action_acknowledge)
+        yield SystemCommand("Bell (u)", "Off, or on again.", self.action_mute)
+        yield SystemCommand("Theme (z)", "Dark, light, or high contrast.", self.action_theme_next)
+        yield SystemCommand("Next view (v)", "Map, side, chase, first person.", self._flight.action_view)
+        yield SystemCommand("Next page (tab)", "One instrument at a time, or all.", self._flight.action_page)
         yield SystemCommand("Help (?)", "All keys.", self.action_help)
         yield SystemCommand("Quit (q)", "Asks first while the vehicle is in the air.", self.action_quit)
 

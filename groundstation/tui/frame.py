@@ -10,7 +10,9 @@ from typing import Protocol
 from groundstation.console import Snapshot
 from groundstation.messages import CommandKind, PilotState, Record
 from groundstation.run import Run
+from groundstation.training.director import Figures
 from groundstation.tui.acts import PILOT_STALE_S
+from groundstation.tui.alarms import Alarm
 from groundstation.tui.hand import Share4
 from groundstation.tui.notes import Note
 from groundstation.tui.track import History, Track
@@ -57,6 +59,9 @@ class Frame:
         hindrances: Why each act and choice cannot be made now, by name; "" where it can.
         guarded_by: What the guard keeps away from, now or a moment ago, or "".
         notes: What the screen itself has to say, oldest first.
+        figures: What the flight has come to so far, or None without a mission.
+        alarms: What is wrong, the most urgent first.
+        muted: No bell is rung.
     """
 
     snapshot: Snapshot
@@ -69,6 +74,9 @@ class Frame:
     notes: Sequence[Note]
     track: Track
     history: History
+    figures: Figures | None = None
+    alarms: Sequence[Alarm] = ()
+    muted: bool = False
 
     @property
     def now(self) -> float:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Iterable, Sequence
 
@@ -71,10 +72,16 @@ def fit(row: Row, width: int) -> Row:
     return fitted
 
 
-def spread(left: Row, right: Row, width: int) -> Row:
+def spread(left: Row, right: Row, width: int, ground: Tone = Tone.TEXT) -> Row:
     """Return a row with one part at each end; the right one is cut where there is no room."""
     gap = max(width - width_of(left) - width_of(right), 1)
-    return fit([*left, (" " * gap, Tone.TEXT), *right], width)
+    return fit([*left, (" " * gap, ground), *right], width)
+
+
+def columns_of(row: Row) -> list[tuple[int, Span]]:
+    """Return the spans of a row, each with the column in which it begins."""
+    starts = itertools.accumulate((len(text) for text, _ in row), initial=0)
+    return list(zip(starts, row, strict=False))
 
 
 def joined(cells: Sequence[str], tones: Sequence[Tone]) -> Row:

@@ -9,6 +9,7 @@ from textual import events
 from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
 from textual.containers import Horizontal, Vertical
+from textual.dom import DOMNode
 from textual.screen import Screen
 
 from groundstation.tui.acts import ACTS
@@ -16,12 +17,14 @@ from groundstation.tui.choices import CHOICES
 from groundstation.tui.frame import Frame
 from groundstation.tui.hand import Hand
 from groundstation.tui.widgets.altitude import Altitude
+from groundstation.tui.widgets.attitude import Attitude
 from groundstation.tui.widgets.banner import Banner
 from groundstation.tui.widgets.curves import Curves
 from groundstation.tui.widgets.force import Force
 from groundstation.tui.widgets.happenings import Happenings
 from groundstation.tui.widgets.instrument import Instrument
 from groundstation.tui.widgets.keys import Keys
+from groundstation.tui.widgets.mission import Mission
 from groundstation.tui.widgets.numbers import FlightLine, Numbers
 from groundstation.tui.widgets.overview import Overview
 from groundstation.tui.widgets.status import StatusBar
@@ -43,6 +46,22 @@ STEPS: tuple[tuple[str, int, int, str], ...] = (
 )
 
 
+# One instrument at a time, in this order.
+_PAGES = (
+    "map",
+    "mission",
+    "attitude",
+    "numbers",
+    "stick",
+    "force",
+    "tracking",
+    "velocity",
+    "curves",
+    "system",
+    "events",
+)
+
+
 def _bindings() -> list[BindingType]:
     acts = [Binding(",".join(act.keys), f"app.act('{act.name}')", act.label, show=False) for act in ACTS]
     choices = [
@@ -58,6 +77,15 @@ def _bindings() -> list[BindingType]:
         *choices,
         *steps,
         Binding("space,0", "centre", "Stick to the centre", show=False),
+        Binding("v,V", "view", "Next view", show=False),
+        Binding("g,G", "follow", "Follow, or whole mission", show=False),
+        Binding("plus,equals_sign", "zoom(1)", "Zoom in", show=False),
+        Binding("minus,underscore", "zoom(-1)", "Zoom out", show=False),
+        Binding("tab", "page(1)", "One instrument, or all", show=False),
+        Binding("shift+tab", "page(-1)", "The page before", show=False),
+        Binding("enter", "app.acknowledge", "Seen", show=False),
+        Binding("u,U", "app.mute", "Bell off or on", show=False),
+        Binding("z,Z", "app.theme_next", "Next theme", show=False),
         Binding("question_mark,f1", "app.help", "Help", show=False),
         Binding("q,Q", "app.quit", "Quit", show=False),
     ]
@@ -79,8 +107,10 @@ class FlightScreen(Screen[None]):
         super().__init__()
         self._hand = hand
         self._stick = Stick(hand, id="stick")
+        self._map = Overview(id="map")
         self._instruments: list[Instrument] = []
         self._latest: Frame | None = None
+        self._page = ""
 
     def compose(self) -> ComposeResult:
         """Lay out the instruments."""
@@ -90,9 +120,13 @@ class FlightScreen(Screen[None]):
         with Horizontal(id="body"):
             with Vertical(id="where"):
                 with Horizontal(id="place"):
-                    yield Overview(id="map")
+                    yield self._map
                     yield Altitude(id="altitude")
-                yield Happenings(id="events")
+                with Horizontal(id="below"):
+                    yield Attitude(id="attitude")
+                    with Vertical(id="course"):
+                        yield Mission(id="mission")
+                        yield Happenings(id="events")
             with Vertical(id="hand"):
                 yield Numbers(id="numbers")
                 yield self._stick
@@ -122,6 +156,28 @@ class FlightScreen(Screen[None]):
     def action_centre(self) -> None:
         """Put the on-screen stick into its centre."""
         self._stick.centre()
+
+    def action_page(self, steps: int = 1) -> None:
+        """Show one instrument over the whole body, the next one, or all again."""
+        pages = ["", *(name for name in _PAGES if self.query(f"#{name}"))]
+        self._page = pages[(pages.index(self._page) + steps) % len(pages)]
+        body = self.query_one("#body")
+        chosen = set(self.query_one(f"#{self._page}").ancestors_with_self) if self._page else set[DOMNode]()
+        body.set_class(bool(self._page), "-alone")
+        for part in body.query("*"):
+            part.set_class(part in chosen, "-chosen")
+
+    def action_view(self) -> None:
+        """See the flight from the next place."""
+        self._map.next_sight()
+
+    def action_follow(self) -> None:
+        """Follow the vehicle with the map, or show the whole mission."""
+        self._map.follow_or_whole()
+
+    def action_zoom(self, steps: int) -> None:
+        """Go nearer, or further away."""
+        self._map.zoom(steps)
 
     def let_go(self) -> None:
         """Let go of the on-screen stick, so that it moves the vehicle no more."""

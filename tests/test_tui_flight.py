@@ -75,7 +75,7 @@ async def test_kill_takes_a_second_other_key_and_escape_takes_it_back(key):
 
 
 async def test_a_kill_that_is_not_confirmed_runs_out_and_says_so(monkeypatch):
-    monkeypatch.setattr("groundstation.tui.app._KILL_S", 0.05)
+    monkeypatch.setattr("groundstation.tui.commanding._KILL_S", 0.05)
     async with cockpit() as scene:
         await scene.press("k")
         while isinstance(scene.app.screen, Confirm):

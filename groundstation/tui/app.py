@@ -12,40 +12,35 @@ import signal
 import time
 from collections.abc import Callable, Iterable
 from dataclasses import replace
-from pathlib import Path
 from typing import ClassVar, cast
 
-import msgspec
-from textual.app import App, SystemCommand
+from textual.app import SystemCommand
 from textual.binding import Binding, BindingType
 from textual.driver import Driver
 from textual.screen import ModalScreen, Screen
 
-from groundstation.config import Settings, user_file
 from groundstation.console import Snapshot
-from groundstation.errors import InputError
-from groundstation.messages import CommandKind, FlightMode, Preset, Severity
-from groundstation.run import Run, write_run
+from groundstation.messages import CommandKind, FlightMode, Severity
+from groundstation.run import Run
 from groundstation.training.director import Director
 from groundstation.training.follower import MissionFollower
-from groundstation.tui.acts import ACTS, BY_NAME, URGENT, Act, Ask, coupled, in_air
+from groundstation.tui.acts import ACTS, URGENT, Act, coupled, in_air
 from groundstation.tui.alarms import Alarms
 from groundstation.tui.alerts import alerts
 from groundstation.tui.checks import red
-from groundstation.tui.choices import CHOICES, CHOICES_BY_NAME, PRESETS_EXPLAINED, Choice, Wishes
+from groundstation.tui.choices import CHOICES, PRESETS_EXPLAINED, Choice
+from groundstation.tui.commanding import Commanding
 from groundstation.tui.frame import Frame, Reader, Supervisor, workspace
 from groundstation.tui.guarding import GuardWatch
 from groundstation.tui.hand import Hand, StickSender
 from groundstation.tui.keepalive import Keepalive
 from groundstation.tui.milestones import Milestones
-from groundstation.tui.notes import Answers
 from groundstation.tui.pages import PAGES, PAGES_BY_NAME
 from groundstation.tui.releases import PREFIX, driver_for
-from groundstation.tui.screens.dialog import Confirm, Typed
+from groundstation.tui.screens.dialog import Confirm
 from groundstation.tui.screens.flight import STEPS, FlightScreen
 from groundstation.tui.screens.help import Help
 from groundstation.tui.screens.page import Page
-from groundstation.tui.setting_list import Entry, changed, save
 from groundstation.tui.theme import THEME, THEMES, next_theme
 from groundstation.tui.track import History, Track
 from groundstation.tui.viewer import Viewer
@@ -53,8 +48,6 @@ from groundstation.tui.widgets.stick import YAW, stays
 
 _POLL_S = 0.1
 _LOOK_S = 0.5
-# A kill that is not confirmed within this was not meant.
-_KILL_S = 3.0
 
 
 def _everywhere() -> list[BindingType]:
@@ -78,7 +71,7 @@ def _everywhere() -> list[BindingType]:
     ]
 
 
-class FlightApp(App[int]):
+class FlightApp(Commanding):
     """The screen of a run.
 
     Args:
@@ -105,24 +98,20 @@ class FlightApp(App[int]):
         follower: MissionFollower | None = None,
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
-        super().__init__()
+        super().__init__(run, console)
         for theme in THEMES:
             self.register_theme(theme)
         self.theme = THEME.name
         self.hand = Hand()
-        self._flight_run, self._reader, self._supervisor = run, console, supervisor
-        self._stick, self._clock = stick, clock
-        self._answers = Answers()
-        self._wishes, self._guard = Wishes(), GuardWatch()
+        self._supervisor, self._stick, self._clock = supervisor, stick, clock
+        self._guard = GuardWatch()
         self._track, self._history, self._alarms = Track(), History(), Alarms()
-        self._snapshot = console.snapshot()
         self._started = self._snapshot.t
         self._next_poll = self._next_look = 0.0
         self._keepalive = Keepalive(self._send_stick, clock)
         self._follower = follower
         self._flight = FlightScreen(self.hand if stick is not None else None)
         self._milestones, self._viewer = Milestones(), Viewer()
-        self._confirmed_real = run.simulated
         self._latest: Frame | None = None
 
     def get_driver_class(self) -> type[Driver]:
@@ -185,29 +174,9 @@ class FlightApp(App[int]):
         return next((screen for screen in self.screen_stack if isinstance(screen, Page)), None)
 
     @property
-    def snapshot(self) -> Snapshot:
-        """The newest of everything."""
-        return self._snapshot
-
-    @property
-    def simulated(self) -> bool:
-        """The vehicle is ours."""
-        return self._flight_run.simulated
-
-    @property
     def director(self) -> Director | None:
         """Knows how the mission is going, if there is one."""
         return self._follower.director if self._follower is not None else None
-
-    @property
-    def settings(self) -> Settings:
-        """As they are set now; what is not live takes effect at the next start."""
-        return self._flight_run.settings
-
-    @property
-    def settings_file(self) -> Path:
-        """Where settings are saved."""
-        return Path(self._flight_run.config) if self._flight_run.config else user_file()
 
     def _frame(self, snapshot: Snapshot) -> Frame:
         return Frame(
@@ -238,62 +207,6 @@ class FlightApp(App[int]):
         """The operator looks elsewhere: let go of the stick."""
         self._flight.let_go()
 
-    def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
-        """Grey what cannot be done now."""
-        table = {"act": BY_NAME, "choose": CHOICES_BY_NAME}.get(action)
-        if table is not None and parameters:
-            asked = table.get(str(parameters[0]))
-            return True if asked is None or not asked.hindrance(self._snapshot) else None
-        return super().check_action(action, parameters)
-
-    def action_act(self, name: str) -> None:
-        """Do one of the operator's acts, asking back where that is due."""
-        act = BY_NAME[name]
-        if act.kind is CommandKind.ENGAGE and not self._confirmed_real:
-            self._confirm_real(act)
-        elif act.ask is Ask.NEVER or (act.ask is Ask.REAL and self._flight_run.simulated):
-            self._command(act)
-        elif not self._hindered(act):
-            which = "the simulated" if self._flight_run.simulated else "the REAL"
-            killing = act.kind is CommandKind.KILL
-            # Held down, a key repeats itself: what lets it fall takes another one.
-            self.ask(
-                f"{act.label} {which} vehicle?",
-                act.explains,
-                lambda: self._command(act),
-                key="" if killing else act.key,
-                within=_KILL_S if killing else 0.0,
-            )
-
-    def _confirm_real(self, act: Act) -> None:
-        """Before a hand is first coupled to a real vehicle, have it typed that it is meant."""
-        if self._hindered(act):
-            return
-        status = self._snapshot.status
-        number = str(status.system_id) if status is not None else ""
-
-        def typed(text: str | None) -> None:
-            if text is not None:
-                self._confirmed_real = True
-                self._command(act)
-
-        self.push_screen(
-            Typed(
-                "Engage the REAL vehicle?",
-                f"The first time, type REAL or its system id, {number}. Propellers turn, people may be near.",
-                lambda text: "" if text in {"REAL", number} else f"type REAL or {number}",
-            ),
-            typed,
-        )
-
-    def action_urgent(self, name: str) -> None:
-        """Do what cannot wait, from wherever the operator is."""
-        while isinstance(self.screen, ModalScreen):
-            if name == "kill" and isinstance(self.screen, Confirm) and self.screen.asks_for(name):
-                return
-            cast("ModalScreen[object]", self.screen).dismiss(None)
-        self.action_act(name)
-
     def action_release(self, axis: int) -> None:
         """A key of the stick was let go: its axis is centred, or in position mode left where it is."""
         if axis == YAW or self._latest is None or not stays(self._latest):
@@ -321,62 +234,6 @@ class FlightApp(App[int]):
             return
         self._viewer.open(self._flight_run.recording)
         self.notify("The viewer is starting.", timeout=3.0)
-
-    def set_setting(self, entry: Entry, text: str) -> None:
-        """Change a setting, save it, and have the pilot take it where it can."""
-        try:
-            settings = changed(self.settings, entry.section, entry.key, text)
-            save(self.settings_file, entry.section, entry.key, text)
-        except InputError as error:
-            self.notify(str(error), severity="error", timeout=8.0, markup=False)
-            return
-        self._flight_run = msgspec.structs.replace(self._flight_run, settings=settings)
-        name = f"{entry.section}.{entry.key} = {text}"
-        if entry.live:
-            write_run(self._flight_run)
-            self.send(CommandKind.SETTINGS)
-            self.notify(f"{name}: saved, and sent to the pilot.", timeout=4.0, markup=False)
-        else:
-            self.notify(f"{name}: saved; takes effect at the next start.", timeout=6.0, markup=False)
-
-    def action_choose(self, name: str) -> None:
-        """Make one of the operator's choices: go on from what is in effect."""
-        choice, pilot = CHOICES_BY_NAME[name], self._snapshot.pilot
-        if not self._hindered(choice) and pilot is not None:
-            self.send(choice.kind, choice.after(self._wishes.present(choice.kind, pilot)))
-
-    def _choose_preset(self, preset: Preset) -> None:
-        if not self._hindered(CHOICES_BY_NAME["preset"]):
-            self.send(CommandKind.PRESET, preset)
-
-    def _hindered(self, asked: Act | Choice) -> bool:
-        """Say why an act or a choice is not possible, if so."""
-        hindrance = asked.hindrance(self._snapshot)
-        if hindrance:
-            self.notify(f"{asked.label}: {hindrance}.", timeout=3.0, markup=False)
-        return bool(hindrance)
-
-    def _command(self, act: Act) -> None:
-        """Send a command, unless it has become impossible while it was asked about."""
-        if not self._hindered(act):
-            self.send(act.kind)
-
-    def send(self, kind: CommandKind, value: int = 0, name: str = "", amount: float = 0.0) -> None:
-        """Send a command and watch for its answer."""
-        now = self._snapshot.t
-        self._wishes.sent(kind, value, now)
-        self._answers.sent(self._reader.command(kind, value, name, amount), kind, now)
-
-    def ask(
-        self, question: str, consequence: str, then: Callable[[], None], *, key: str = "", within: float = 0.0
-    ) -> None:
-        """Ask back, and do it where the answer is yes; see `Confirm`."""
-
-        def answered(yes: bool | None) -> None:
-            if yes:
-                then()
-
-        self.push_screen(Confirm(question, consequence, key, within), answered)
 
     def _end(self, code: int) -> None:
         """Leave at once with an exit code; the pilot lets go when it is ended."""

@@ -7,7 +7,7 @@ import math
 from groundstation.messages import Phase, Severity
 from groundstation.tui import judge
 from groundstation.tui.acts import ACTS, armed, in_air
-from groundstation.tui.alerts import worst
+from groundstation.tui.alerts import alerts, next_step
 from groundstation.tui.choices import CHOICES
 from groundstation.tui.frame import Frame
 from groundstation.tui.rows import clock, quantity, span_of_time
@@ -29,9 +29,15 @@ HELP = "\n".join(
 def line(frame: Frame) -> str:
     """Return the flight as one line: clock, kind and state of the vehicle, figures, what is wrong or what is next."""
     kind = "SIM" if frame.run.simulated else "REAL"
-    severity, words = worst(frame)
+    severity, words = _worst(frame)
     sign = "" if severity is Severity.INFO else f"{severity.name}: "
     return f"{clock(frame.now - frame.started)} {kind} {', '.join((*_state(frame), *_figures(frame)))}. {sign}{words}"
+
+
+def _worst(frame: Frame) -> tuple[Severity, str]:
+    """Return the most urgent that is wrong, the first of its kind, else what can be done next."""
+    found = max(alerts(frame), key=lambda alert: alert.severity, default=None)
+    return (found.severity, found.text) if found is not None else (Severity.INFO, next_step(frame))
 
 
 def _state(frame: Frame) -> list[str]:

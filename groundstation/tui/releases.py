@@ -11,6 +11,7 @@ import re
 from collections.abc import Iterable
 
 from textual import events
+from textual._xterm_parser import XTermParser
 from textual.driver import Driver
 from textual.drivers import linux_driver
 from textual.drivers.linux_driver import KITTY_REPORT_EVENT_TYPES, LinuxDriver
@@ -21,7 +22,7 @@ _ASKED = re.compile(r"\x1b\[>(\d+)u")
 _RELEASE = "3"
 
 
-class ReleaseParser(linux_driver.XTermParser):
+class ReleaseParser(XTermParser):
     """Reads key events with their type: releases get a name of their own, repeats are presses."""
 
     def _sequence_to_key_events(self, sequence: str, alt: bool = False) -> Iterable[events.Key]:

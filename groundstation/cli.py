@@ -42,6 +42,7 @@ _COMMANDS: dict[str, ModuleType] = {
 
 _EXAMPLES = """\
 examples:
+  groundstation                                              choose vehicle, device and mission, then fly
   groundstation --sim                                        fly the simulated vehicle
   groundstation --sim --mission paper                        fly a mission by hand
   groundstation --sim --headless --mission paper --json      let the scripted hand fly it
@@ -128,8 +129,13 @@ def _dispatch(parser: argparse.ArgumentParser, asked: argparse.Namespace) -> int
         run = cast(Callable[[argparse.Namespace], int], getattr(importlib.import_module(module), function))
         return run(asked)
     if not asked.sim and not asked.connect:
-        parser.print_help()
-        return EXIT_BAD_INPUT
+        if asked.headless or asked.plain or not (sys.stdin.isatty() and sys.stdout.isatty()):
+            parser.print_help()
+            return EXIT_BAD_INPUT
+        from groundstation import connecting
+
+        if not connecting.connect(asked):
+            return 0
     from groundstation import fly
 
     return fly.fly(asked)

@@ -66,6 +66,8 @@ class Buttons(Struct, frozen=True, forbid_unknown_fields=True):
         fine: While it is held, fine.
         mapping: Switches between rate and position.
         turn_left, turn_right: Turn at the full yaw rate while held, for a handle without rotation.
+        release: Uncouples the hand: the vehicle holds.
+        hold, land, return_home: Command that, as the keys do.
     """
 
     clutch: Button = 0
@@ -73,6 +75,10 @@ class Buttons(Struct, frozen=True, forbid_unknown_fields=True):
     mapping: Button = 4
     turn_left: Button = 2
     turn_right: Button = 3
+    release: Button = 5
+    hold: Button = -1
+    land: Button = -1
+    return_home: Button = -1
 
 
 class Control(Struct, frozen=True, forbid_unknown_fields=True):
@@ -264,7 +270,7 @@ def load_settings(path: Path | None) -> Settings:
     Raises:
         ConfigError: With file, key and reason in one sentence.
     """
-    file = path or _usual_file()
+    file = path or usual_file()
     if file is None:
         return Settings()
     try:
@@ -281,6 +287,17 @@ def load_settings(path: Path | None) -> Settings:
         raise ConfigError(f"{file}: {error_sentence(error)}") from error
 
 
+def differences(before: Settings, after: Settings) -> str:
+    """Return in words which settings differ, with their new values; "" where none does."""
+    return ", ".join(
+        f"{section}.{key} = {getattr(table, key)}"
+        for section in before.__struct_fields__
+        if isinstance(table := getattr(after, section), Struct)
+        for key in table.__struct_fields__
+        if getattr(table, key) != getattr(getattr(before, section), key)
+    )
+
+
 def check_flown_by_rate(settings: Settings) -> None:
     """Refuse settings that no simulated hand flies by: it holds the handle where a speed is, not where a place is.
 
@@ -291,9 +308,13 @@ def check_flown_by_rate(settings: Settings) -> None:
         raise ConfigError('mapping.mode: a simulated hand flies by rate; set "rate" to let one fly.')
 
 
-def _usual_file() -> Path | None:
+def usual_file() -> Path | None:
+    """Return the settings file that is read where none is asked for, if there is one."""
+    return next((file for file in (Path(CONFIG_NAME), user_file()) if file.is_file()), None)
+
+
+def user_file() -> Path:
+    """Return where the user's own settings file is, or would be."""
     import platformdirs
 
-    here = Path(CONFIG_NAME)
-    user = Path(platformdirs.user_config_dir("groundstation", appauthor=False)) / CONFIG_NAME
-    return next((file for file in (here, user) if file.is_file()), None)
+    return Path(platformdirs.user_config_dir("groundstation", appauthor=False)) / CONFIG_NAME

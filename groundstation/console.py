@@ -8,8 +8,8 @@ from __future__ import annotations
 import itertools
 import time
 from collections import deque
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 
 from groundstation.bus import Bus
 from groundstation.messages import (
@@ -20,6 +20,8 @@ from groundstation.messages import (
     HANDLE,
     MISSION_PROGRESS,
     OBSTACLES,
+    PARAMETER,
+    PARAMETER_TEXT,
     PILOT_STATE,
     SERVO_REPORT,
     SETPOINT,
@@ -32,12 +34,14 @@ from groundstation.messages import (
     Event,
     Handle,
     MissionProgress,
+    Parameter,
     PilotState,
     Ranges,
     ServoReport,
     Setpoint,
     VehicleState,
     VehicleStatus,
+    fit,
 )
 
 _EVENTS_KEPT = 500
@@ -52,6 +56,7 @@ class Snapshot:
         ranges: What the vehicle's own distance sensors see.
         events: The latest events, oldest first.
         answers: Answers to commands since the last snapshot.
+        parameters: The vehicle's own, as last read, by name.
     """
 
     t: float
@@ -66,6 +71,7 @@ class Snapshot:
     progress: MissionProgress | None
     events: tuple[Event, ...]
     answers: tuple[CommandAnswer, ...]
+    parameters: Mapping[str, Parameter] = field(default_factory=dict[str, Parameter])
 
 
 class Console:
@@ -93,11 +99,16 @@ class Console:
         self._progress = bus.subscriber(MISSION_PROGRESS, depth=1)
         self._answers = bus.subscriber(COMMAND_ANSWER)
         self._event_stream = bus.subscriber(EVENT)
+        self._parameter_stream = bus.subscriber(PARAMETER)
+        self._parameters: dict[str, Parameter] = {}
         self._events: deque[Event] = deque(maxlen=_EVENTS_KEPT)
 
     def snapshot(self) -> Snapshot:
         """Return the newest of everything."""
         self._events.extend(self._event_stream.drain())
+        if read := list(self._parameter_stream.drain()):
+            # A new dictionary, so that earlier snapshots stay as they were; it is seldom.
+            self._parameters = self._parameters | {each.name.decode(): each for each in read}
         return Snapshot(
             t=self._clock(),
             handle=self._handle.newest(),
@@ -111,16 +122,20 @@ class Console:
             progress=self._progress.newest(),
             events=tuple(self._events),
             answers=tuple(self._answers.drain()),
+            parameters=self._parameters,
         )
 
-    def command(self, kind: CommandKind, value: int = 0) -> int:
+    def command(self, kind: CommandKind, value: int = 0, name: str = "", amount: float = 0.0) -> int:
         """Send a command and return its number, which its answer will carry.
 
         Args:
             kind: What is asked for.
             value: What a choice chooses, see `groundstation.messages.Command`.
+            name: Of the vehicle's parameter that is to be set.
+            amount: What it is to be set to.
         """
         number = next(self._numbers)
         command = Command(t=self._clock(), number=number, kind=kind, value=value, source=self._source)
+        command.name, command.amount = fit(name, PARAMETER_TEXT), amount
         self._commands.send(command)
         return number

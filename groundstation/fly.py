@@ -16,7 +16,8 @@ from typing import NoReturn
 import msgspec
 
 from groundstation.bus import Bus
-from groundstation.config import Settings, check_flown_by_rate, load_settings
+from groundstation.config import Settings, check_flown_by_rate, load_settings, usual_file
+from groundstation.connecting import note
 from groundstation.errors import InputError
 from groundstation.processes import Supervisor, free_port, running
 from groundstation.run import Run
@@ -38,12 +39,17 @@ def fly(asked: argparse.Namespace) -> int:
     """
     _check(asked)
     run = plan(asked)
+    note(asked)
     with started(run, asked) as (bus, supervisor):
         if asked.headless:
             from groundstation.headless import fly_headless
 
             return fly_headless(run, bus, supervisor, as_json=asked.json, seed=asked.seed)
-        from groundstation.tui.app import fly_on_screen
+        if asked.plain:
+            from groundstation.tui.plain import fly_plainly
+
+            return fly_plainly(run, bus, supervisor)
+        from groundstation.tui.running import fly_on_screen
 
         return fly_on_screen(run, bus, supervisor)
 
@@ -97,8 +103,11 @@ def plan(asked: argparse.Namespace) -> Run:
         controller=asked.controller,
         pilot=_pilot(asked.pilot),
         seed=asked.seed,
-        terminal="" if asked.headless else terminal_path(),
+        terminal="" if asked.headless or asked.plain else terminal_path(),
         started=now.isoformat(timespec="milliseconds"),
+        config=str((asked.config or usual_file() or Path()).resolve())
+        if asked.config or usual_file()
+        else "",
     )
 
 
@@ -117,8 +126,13 @@ def _check(asked: argparse.Namespace) -> None:
             "--headless --connect flies a real vehicle by itself; add --confirm-real if you mean it."
         )
     check_simulated(asked)
-    if not asked.headless and not (sys.stdin.isatty() and sys.stdout.isatty()):
-        raise InputError("the screen needs a terminal; use --headless --mission NAME without one.")
+    if asked.headless and asked.plain:
+        raise InputError("--plain is flown by hand and --headless by the scripted hand; choose one.")
+    without_screen = asked.headless or asked.plain
+    if not without_screen and not (sys.stdin.isatty() and sys.stdout.isatty()):
+        raise InputError(
+            "the screen needs a terminal; without one use --plain, or --headless --mission NAME."
+        )
 
 
 def check_simulated(asked: argparse.Namespace) -> None:

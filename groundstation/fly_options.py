@@ -43,6 +43,11 @@ def add_flight(parser: argparse.ArgumentParser) -> None:
     flight.add_argument(
         "--headless", action="store_true", help="no screen: the scripted hand flies the mission"
     )
+    flight.add_argument(
+        "--plain",
+        action="store_true",
+        help="no screen: a line of status a second, commands as words from stdin (for screen readers and logs)",
+    )
     flight.add_argument("--json", action="store_true", help="with --headless: the summary as one JSON object")
     flight.add_argument(
         "--confirm-real",

@@ -23,6 +23,7 @@ EVENT_TEXT = 240
 ANSWER_TEXT = 200
 REASON_TEXT = 160
 NAME_TEXT = 49
+PARAMETER_TEXT = 17
 # Sectors of the ring in `Ranges`, as many as MAVLink's OBSTACLE_DISTANCE has room for.
 RING_SECTORS = 72
 
@@ -89,6 +90,9 @@ class CommandKind(IntEnum):
     CLUTCH = 12
     PRESET = 13
     CUES = 14
+    PARAMETERS = 15
+    SET_PARAMETER = 16
+    SETTINGS = 17
 
 
 class MappingMode(IntEnum):
@@ -412,6 +416,7 @@ class VehicleStatus(Record):
         dropped: Setpoint frames the gate kept back.
         streaming: State of the setpoint stream, a `Stream`; FLYING only once the vehicle has confirmed offboard
             for this very stream.
+        unsafe: Why its own failsafes keep the hand from being coupled, or "".
     """
 
     heard_t: float
@@ -428,6 +433,7 @@ class VehicleStatus(Record):
     in_air: int
     mode: int
     streaming: int
+    unsafe: bytes
     _fields_ = (
         ("t", _F64),
         ("heard_t", _F64),
@@ -444,6 +450,28 @@ class VehicleStatus(Record):
         ("in_air", _U8),
         ("mode", _U8),
         ("streaming", _U8),
+        ("unsafe", ctypes.c_char * REASON_TEXT),
+    )
+
+
+class Parameter(Record):
+    """One of the vehicle's own parameters, each time it is read.
+
+    Attributes:
+        whole: It is an integer.
+        count: How many the vehicle has; 0 where they have not all been asked for.
+    """
+
+    name: bytes
+    value: float
+    count: int
+    whole: int
+    _fields_ = (
+        ("t", _F64),
+        ("name", ctypes.c_char * PARAMETER_TEXT),
+        ("value", _F64),
+        ("count", _U32),
+        ("whole", _U8),
     )
 
 
@@ -452,18 +480,23 @@ class Command(Record):
 
     Attributes:
         value: What a MAPPING, PRESET or CUES command chooses; of FINE and CLUTCH 1 for on, 0 for off; else 0.
+        name, amount: Which parameter of the vehicle SET_PARAMETER sets, and to what.
     """
 
     number: int
     kind: int
     value: int
     source: bytes
+    name: bytes
+    amount: float
     _fields_ = (
         ("t", _F64),
         ("number", _U64),
         ("kind", _U8),
         ("value", _U8),
         ("source", ctypes.c_char * 16),
+        ("name", ctypes.c_char * PARAMETER_TEXT),
+        ("amount", _F64),
     )
 
 
@@ -622,6 +655,8 @@ PILOT_STATE = Topic("pilot_state", PilotState, depth=256, history=64)
 VEHICLE_STATE = Topic("vehicle_state", VehicleState, depth=1024, history=128)
 ATTITUDE = Topic("attitude", Attitude, depth=1024)
 VEHICLE_STATUS = Topic("vehicle_status", VehicleStatus, depth=256, history=64)
+# A vehicle has a thousand or two, and they are read all at once.
+PARAMETER = Topic("parameter", Parameter, depth=4096, history=0)
 OBSTACLES = Topic("obstacles", Ranges, history=32)
 COMMAND = Topic("command", Command, history=0)
 COMMAND_ANSWER = Topic("command_answer", CommandAnswer, history=0)

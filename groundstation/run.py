@@ -32,6 +32,7 @@ class Run(Struct, frozen=True):
         started: Wall-clock time of the start, ISO 8601.
         pilot: Who flies, as people know them.
         seed: Of all that is random in the simulation.
+        config: The settings file, or "" where they are the defaults.
     """
 
     run_id: str
@@ -48,6 +49,7 @@ class Run(Struct, frozen=True):
     controller: str = "paper"
     pilot: str = ""
     seed: int = 0
+    config: str = ""
 
     @property
     def hand(self) -> Path | None:
@@ -71,11 +73,18 @@ class Run(Struct, frozen=True):
 
 def write_run(run: Run) -> Path:
     """Write the run file where its processes find it and return its path."""
-    folder = run_folder(run.run_id)
-    folder.mkdir(mode=0o700, parents=True, exist_ok=True)
-    path = folder / RUN_FILE
-    path.write_bytes(msgspec.json.encode(run))
+    path = run_file(run.run_id)
+    path.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
+    new = path.with_suffix(".new")
+    new.write_bytes(msgspec.json.encode(run))
+    # In one step: a process that reads it meanwhile finds the one or the other.
+    new.replace(path)
     return path
+
+
+def run_file(run_id: str) -> Path:
+    """Return where a run's file is."""
+    return run_folder(run_id) / RUN_FILE
 
 
 def read_run(path: Path) -> Run:

@@ -268,6 +268,7 @@ class CannedReader:
         self.shown = snapshot
         self.commands: list[CommandKind] = []
         self.values: list[int] = []
+        self.amounts: list[tuple[str, float]] = []
         self.answers: list[CommandAnswer] = []
 
     def snapshot(self) -> Snapshot:
@@ -275,10 +276,11 @@ class CannedReader:
         answers, self.answers = tuple(self.answers), []
         return replace(self.shown, answers=answers)
 
-    def command(self, kind: CommandKind, value: int = 0) -> int:
+    def command(self, kind: CommandKind, value: int = 0, name: str = "", amount: float = 0.0) -> int:
         """Take note of a command."""
         self.commands.append(kind)
         self.values.append(value)
+        self.amounts.append((name, amount))
         return len(self.commands)
 
 

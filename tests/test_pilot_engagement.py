@@ -74,6 +74,7 @@ def test_all_conditions_met_it_engages_on_the_operators_act() -> None:
         ({"centred": False}, "centre"),
         ({"streaming": Stream.STARTING}, "last stream"),
         ({"streaming": Stream.FLYING}, "last stream"),
+        ({"unsafe": "GF_ACTION = 4 (Terminate)"}, "GF_ACTION = 4"),
     ],
 )
 def test_each_condition_missing_refuses_with_its_reason(change: dict, words: str) -> None:
@@ -253,3 +254,7 @@ def test_centred_is_within_15_percent_of_travel_and_of_rotation() -> None:
 def test_what_cannot_be_is_not_believed(bad: float) -> None:
     assert believable((0.0, -5.0, 999_999.0))
     assert not believable((0.0, bad, 1.0))
+
+
+def test_failsafes_that_turn_dangerous_in_flight_do_not_uncouple() -> None:
+    assert advance(ENGAGED, FLYING._replace(unsafe="GF_ACTION = 4"), SAFETY) == (ENGAGED, None)

@@ -8,9 +8,10 @@ import pytest
 from canned_flight import NOTHING, START, CannedFlight, canned_run
 
 from groundstation.messages import CommandAnswer, CommandKind, Event, Severity
-from groundstation.tui.acts import ACTS, BY_NAME
+from groundstation.tui.acts import ACTS, BY_NAME, URGENT
 from groundstation.tui.choices import CHOICES
 from groundstation.tui.notes import ANSWER_S, Answers, Note, from_event, merged, words
+from groundstation.tui.pages import PAGES
 from groundstation.tui.screens.flight import STEPS
 
 
@@ -70,10 +71,13 @@ def test_without_a_device_nothing_engages():
 
 def test_every_command_is_an_act_or_a_choice_and_no_two_share_a_key():
     acts, choices = {act.kind for act in ACTS}, {choice.kind for choice in CHOICES}
-    assert acts | choices == set(CommandKind)
+    # The pages of parameters and settings send the rest.
+    others = {CommandKind.PARAMETERS, CommandKind.SET_PARAMETER, CommandKind.SETTINGS}
+    assert acts | choices | others == set(CommandKind)
     assert not acts & choices
     keys = [key for asked in (*ACTS, *CHOICES) for key in asked.keys]
-    keys += [key for key, *_ in STEPS] + ["0", "q", "Q"]
+    keys += [key for key, *_ in STEPS] + ["0", "q", "Q", "f1"]
+    keys += [act.everywhere for act in URGENT] + [page.key for page in PAGES]
     assert len(keys) == len(set(keys))
 
 

@@ -28,8 +28,9 @@ from groundstation.messages import (
     Severity,
 )
 from groundstation.run_folder import new_run_id, run_folder, sweep
-from groundstation.tui import app as app_module
-from groundstation.tui.app import FlightApp, fly_on_screen
+from groundstation.tui import running as app_module
+from groundstation.tui.app import FlightApp
+from groundstation.tui.running import fly_on_screen
 from groundstation.tui.widgets.instrument import Instrument
 
 TOPICS = {

@@ -14,8 +14,9 @@ from textual.widget import Widget
 
 from groundstation.messages import CommandAnswer, CommandKind, FlightMode, Record
 from groundstation.tui.hand import CENTRED
-from groundstation.tui.screens.dialog import Confirm, Help
+from groundstation.tui.screens.dialog import Confirm
 from groundstation.tui.screens.flight import FlightScreen
+from groundstation.tui.screens.help import Help
 from groundstation.tui.theme import Tone
 from groundstation.tui.widgets.instrument import Instrument
 from groundstation.tui.widgets.overview import Overview
@@ -63,12 +64,25 @@ async def test_what_makes_things_safer_is_never_asked_about(key):
         assert len(scene.reader.commands) == 1
 
 
-async def test_kill_takes_two_presses_and_escape_takes_it_back():
+@pytest.mark.parametrize("key", ["k", "f6"])
+async def test_kill_takes_a_second_other_key_and_escape_takes_it_back(key):
     async with cockpit() as scene:
-        await scene.press("k", "escape")
+        await scene.press(key, "escape", "y")
+        await scene.press(key, "k", "f6", key, "n")
         assert scene.reader.commands == []
-        await scene.press("k", "k")
+        await scene.press(key, "y")
         assert scene.reader.commands == [CommandKind.KILL]
+
+
+async def test_a_kill_that_is_not_confirmed_runs_out_and_says_so(monkeypatch):
+    monkeypatch.setattr("groundstation.tui.commanding._KILL_S", 0.05)
+    async with cockpit() as scene:
+        await scene.press("k")
+        while isinstance(scene.app.screen, Confirm):
+            await scene.pilot.pause(0.01)
+        await scene.press("y")
+        assert scene.reader.commands == []
+        assert any("Not confirmed" in words for words in scene.notices())
 
 
 @pytest.mark.parametrize("way", ["k", "question_mark"])

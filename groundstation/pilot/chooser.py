@@ -19,6 +19,15 @@ CHOOSING = frozenset(
 )
 
 
+# What a button commands when it is pressed, by its name in the settings.
+_COMMANDING = {
+    "release": CommandKind.DISENGAGE,
+    "hold": CommandKind.HOLD,
+    "land": CommandKind.LAND,
+    "return_home": CommandKind.RETURN,
+}
+
+
 class Chosen(NamedTuple):
     """What stands between ticks.
 
@@ -39,6 +48,14 @@ def beginning(settings: Settings) -> Chosen:
             preset=Preset[settings.control.preset.upper()],
         )
     )
+
+
+def after_settings(chosen: Chosen, before: Settings, now: Settings) -> Chosen:
+    """Return what is chosen after the settings have changed: what they choose anew, else as it was."""
+    begun, fresh = beginning(before).choices, beginning(now).choices
+    if begun == fresh:
+        return chosen
+    return chosen._replace(choices=chosen.choices._replace(mapping=fresh.mapping, preset=fresh.preset))
 
 
 def obeyed(chosen: Chosen, command: Command) -> tuple[Chosen, str]:
@@ -68,6 +85,14 @@ def pressed(chosen: Chosen, buttons: int, settings: Buttons) -> Chosen:
         other = MappingMode.POSITION if choices.mapping is MappingMode.RATE else MappingMode.RATE
         choices = choices._replace(mapping=other)
     return Chosen(choices, buttons)
+
+
+def commanded(chosen: Chosen, buttons: int, settings: Buttons) -> tuple[CommandKind, ...]:
+    """Return what the buttons that have just been pressed command."""
+    new = buttons & ~chosen.buttons
+    if not new:
+        return ()
+    return tuple(kind for name, kind in _COMMANDING.items() if _held(new, getattr(settings, name)))
 
 
 def at_tick(chosen: Chosen, settings: Buttons) -> Choices:

@@ -44,6 +44,7 @@ class Conditions(NamedTuple):
         state_valid: It trusts that state itself.
         boots: How often it has rebooted since the servo started.
         link_fault: Why the link is too poor to fly by, in words, or "".
+        unsafe: Why the vehicle's own failsafes forbid to couple, in words, or ""; what is coupled stays so.
     """
 
     t: float
@@ -62,6 +63,7 @@ class Conditions(NamedTuple):
     state_valid: bool
     boots: int
     link_fault: str = ""
+    unsafe: str = ""
 
 
 class Engagement(NamedTuple):
@@ -108,7 +110,7 @@ def centred(handle: HandleState, info: DeviceInfo, yaw_range: float) -> bool:
 
 def refusal(c: Conditions, safety: Safety) -> str:
     """Return why the hand cannot be coupled now, or "" where it can."""
-    words = hand_fault(c, safety) or vehicle_fault(c, safety)
+    words = hand_fault(c, safety) or vehicle_fault(c, safety) or c.unsafe
     if words:
         return words
     if c.streaming in _STREAMING:

@@ -10,6 +10,7 @@ from groundstation.bus import Bus
 from groundstation.frames import Vector4
 from groundstation.messages import (
     ANSWER_TEXT,
+    COMMAND,
     COMMAND_ANSWER,
     DEVICE_REPORT,
     HANDLE,
@@ -21,6 +22,7 @@ from groundstation.messages import (
     TICK_INPUTS,
     Command,
     CommandAnswer,
+    CommandKind,
     DeviceReport,
     Handle,
     Phase,
@@ -37,6 +39,8 @@ from groundstation.pilot.pilot import Outputs
 from groundstation.pilot.setpoint import Commanded
 
 _NAME, _RENDERS = 64, 16
+# Far from the numbers that any console counts up to.
+_NUMBERS = 1 << 32
 _UNKNOWN4 = (nan, nan, nan, nan)
 
 
@@ -76,6 +80,8 @@ class Outbox:
         self._setpoints = bus.publisher(SETPOINT)
         self._states = bus.publisher(PILOT_STATE)
         self._answers = bus.publisher(COMMAND_ANSWER)
+        self._commands = bus.publisher(COMMAND)
+        self._number = _NUMBERS
         self._servo_reports = bus.publisher(SERVO_REPORT)
         self._device_reports = bus.publisher(DEVICE_REPORT)
         self._handle = Handle()
@@ -149,6 +155,11 @@ class Outbox:
         _fill_forecast(record, outputs)
         _fill_cues(record, outputs)
         self._states.send(record)
+
+    def command(self, t: float, kind: CommandKind) -> None:
+        """Send what a button of the handle commands; this process obeys it like any other."""
+        self._number += 1
+        self._commands.send(Command(t=t, number=self._number, kind=int(kind), source=b"handle"))
 
     def answer(self, t: float, command: Command, refusal: str) -> None:
         """Answer a command: done, or refused with the reason."""

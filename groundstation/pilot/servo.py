@@ -14,10 +14,19 @@ from drivers.device import ZERO3, DeviceError, DeviceInfo, HandleState
 from groundstation.bus import Bus
 from groundstation.child import Lifeline, run_child
 from groundstation.clock import Clock, Every, Pacer
+from groundstation.config import differences
 from groundstation.devices.keeper import ABSENT, DeviceKeeper, Keeper
 from groundstation.devices.making import flight_device
 from groundstation.messages import COMMAND, Command, CommandKind, MappingMode, Phase, Severity
-from groundstation.pilot.chooser import CHOOSING, at_tick, beginning, obeyed, pressed
+from groundstation.pilot.chooser import (
+    CHOOSING,
+    after_settings,
+    at_tick,
+    beginning,
+    commanded,
+    obeyed,
+    pressed,
+)
 from groundstation.pilot.engagement import (
     Conditions,
     Ending,
@@ -37,7 +46,7 @@ from groundstation.pilot.realtime import request_realtime
 from groundstation.pilot.sight import ZERO4
 from groundstation.pilot.surroundings import surroundings_of
 from groundstation.pilot.vehicle_feed import VehicleFeed
-from groundstation.run import Run
+from groundstation.run import Run, read_run, run_file
 
 ROLE = "pilot"
 REPORT_S = 0.5
@@ -72,6 +81,7 @@ class Servo:
     """
 
     def __init__(self, run: Run, bus: Bus, keeper: Keeper, clock: Clock = time.monotonic) -> None:
+        self._run = run
         self._settings = run.settings
         self._surroundings = surroundings_of(run)
         self._controller = load_controller(run.controller, run.settings)
@@ -106,6 +116,8 @@ class Servo:
             self._fit(self._keeper.info)
         self._feed.update(now, self._ahead)
         hand, conditions = self._look(now, handle)
+        for kind in commanded(self._chosen, hand.buttons, self._settings.buttons):
+            self._outbox.command(now, kind)
         before = self._engagement.phase
         cut = self._decide(conditions) or not hand.homed
         phase = self._engagement.phase
@@ -192,6 +204,7 @@ class Servo:
             state_valid=feed.valid,
             boots=feed.boots,
             link_fault=link_fault(feed.delay, feed.loss, self._settings.link),
+            unsafe=feed.unsafe,
         )
         self._last_t = now
         return hand, conditions
@@ -215,6 +228,8 @@ class Servo:
         kind = CommandKind(command.kind)
         if kind is CommandKind.ENGAGE:
             self._engage(command, conditions)
+        elif kind is CommandKind.SETTINGS:
+            self._outbox.answer(conditions.t, command, self._take_settings())
         elif kind in CHOOSING:
             self._chosen, refusal = obeyed(self._chosen, command)
             self._outbox.answer(conditions.t, command, refusal)
@@ -225,6 +240,24 @@ class Servo:
                 self._end(ending)
             if kind is CommandKind.DISENGAGE:
                 self._outbox.answer(conditions.t, command, "")
+
+    def _take_settings(self) -> str:
+        """Take the settings that the run's file has now; return why not, or ""."""
+        if self._engagement.phase is not Phase.DISENGAGED:
+            return "the hand is engaged; release it first"
+        before = self._settings
+        try:
+            self._run = read_run(run_file(self._run.run_id))
+            self._settings = self._run.settings
+            self._surroundings = surroundings_of(self._run)
+            self._fit(self._info)
+        except (OSError, ValueError) as error:
+            self._settings = before
+            return f"the settings cannot be flown with: {error}"
+        if words := differences(before, self._settings):
+            self._bus.event(Severity.INFO, f"Settings: {words}.")
+        self._chosen = after_settings(self._chosen, before, self._settings)
+        return ""
 
     def _engage(self, command: Command, conditions: Conditions) -> None:
         before = self._engagement.phase

@@ -44,6 +44,7 @@ class VehicleFeed:
         boots: How often its clock started anew.
         connected, armed, in_air, mode, streaming: As in `VehicleStatus`.
         delay: Measured round trip, s; NaN while it is not known.
+        unsafe: Why its own failsafes keep the hand from being coupled, or "".
         loss: Share of its frames lost lately, 0 to 1.
         seen: Points of obstacles that its own sensors see and that matter where it will be, world, m; see
             `groundstation.pilot.ranges`.
@@ -72,6 +73,7 @@ class VehicleFeed:
         self.streaming = Stream.IDLE
         self.delay = nan
         self.loss = 0.0
+        self.unsafe = ""
         self.seen: tuple[Vector3, ...] = ()
 
     def update(self, now: float, ahead: Vector4) -> None:
@@ -124,6 +126,7 @@ class VehicleFeed:
         self.in_air = bool(status.in_air)
         self.mode = FlightMode(status.mode)
         self.streaming = Stream(status.streaming)
+        self.unsafe = status.unsafe.decode(errors="replace")
         self.delay = status.rtt if believable((status.rtt,)) and status.rtt > 0.0 else nan
         # What cannot be is taken for the worst.
         self.loss = status.loss if 0.0 <= status.loss <= 1.0 else 1.0

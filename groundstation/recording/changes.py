@@ -15,12 +15,15 @@ from groundstation.messages import (
     DEVICE_REPORT,
     EVENT,
     MISSION_PROGRESS,
+    PARAMETER,
     PILOT_STATE,
     VEHICLE_STATUS,
+    Command,
     CommandKind,
     DeviceReport,
     FlightMode,
     MappingMode,
+    Parameter,
     Phase,
     PilotState,
     Preset,
@@ -41,6 +44,9 @@ _PILOT_WORDS = (
     "phase", "on_leash", "reason", "mapping", "fine", "clutched", "waiting", "preset", "guarding", "guarded_by",
     "compensated",
 )  # fmt: skip
+
+# What stands where the vehicle's own failsafes forbid nothing.
+SAFE = "nothing"
 
 Timed = tuple[float, str]
 
@@ -79,6 +85,7 @@ class Changes:
         for path, said in (
             (entities.REASON, ((state.t, text(state.reason)) for state in pilot)),
             (entities.GUARDED, ((state.t, _guarded(state)) for state in pilot)),
+            (entities.UNSAFE, ((state.t, text(state.unsafe) or SAFE) for state in status)),
         ):
             if lines := [(t, words, _INFO) for t, words in self._changed(path, said) if words]:
                 yield self._texts(path, lines)
@@ -91,7 +98,8 @@ class Changes:
             path = f"{entities.EVENTS}/{text(event.source)}"
             events.setdefault(path, []).append((event.t, text(event.text), level))
         for command in batch.of(COMMAND):
-            line = f"{_word(CommandKind, command.kind).capitalize()} asked for ({text(command.source)})"
+            name = _word(CommandKind, command.kind).capitalize()
+            line = f"{name}{_parameter_asked(command)} asked for ({text(command.source)})"
             events.setdefault(entities.COMMANDS, []).append((command.t, line, _INFO))
         for answer in batch.of(COMMAND_ANSWER):
             name = _word(CommandKind, answer.kind).capitalize()
@@ -99,6 +107,11 @@ class Changes:
             line = f"{name} {'done' if answer.ok else 'refused'}{': ' if words else ''}{words}"
             level = _INFO if answer.ok else _WARNING
             events.setdefault(entities.COMMANDS, []).append((answer.t, line, level))
+        for parameter in batch.of(PARAMETER):
+            path, words = f"{entities.PARAMETERS}/{text(parameter.name)}", _parameter(parameter)
+            # Those that are judged are told again and again, for who comes late.
+            if self._changed(path, [(parameter.t, words)]):
+                events.setdefault(entities.PARAMETERS, []).append((parameter.t, words, _INFO))
         for path, lines in events.items():
             yield self._texts(path, sorted(lines))
 
@@ -118,6 +131,18 @@ class Changes:
         columns = rr.TextLog.columns(text=list(texts), level=list(levels))
         # Whole milliseconds read well in a table.
         return Chunk(path, time_column(np.round(np.array(times) - self._start, 3)), columns)
+
+
+def _parameter_asked(command: Command) -> str:
+    """Return which parameter is to be set to what, where a command says so."""
+    named = command.name or command.amount
+    return f" {text(command.name)} = {command.amount:g}" if named else ""
+
+
+def _parameter(parameter: Parameter) -> str:
+    value = f"{parameter.value:.0f}" if parameter.whole else f"{parameter.value:#g}"
+    count = f" (of {parameter.count})" if parameter.count else ""
+    return f"{text(parameter.name)} = {value}{count}"
 
 
 def _differing(states: Sequence[PilotState], fields: Sequence[str]) -> list[PilotState]:

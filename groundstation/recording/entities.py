@@ -6,6 +6,8 @@ EVENTS = "/events"
 COMMANDS = f"{EVENTS}/commands"
 REASON = "/pilot/reason"
 GUARDED = "/pilot/guarded_by"
+UNSAFE = "/vehicle/unsafe"
+PARAMETERS = "/vehicle/parameters"
 # Static text of the whole flight.
 ABOUT = "/about"
 

@@ -26,7 +26,7 @@ EXIT_DIFFERENT = 1
 # What only a flight through the simulator has, and where it was not asked for.
 _OF_WORLD = {
     "mission": None, "airframe": None, "model": None, "wind": "mission", "channel": "", "seed": None,
-    "speed": None, "rerun": False, "out": None,
+    "speed": None, "rerun": False, "viewer": None, "out": None,
 }  # fmt: skip
 _SHOWN = 8
 

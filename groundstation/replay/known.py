@@ -9,8 +9,11 @@ import numpy as np
 
 from drivers.device import DeviceInfo
 from groundstation.messages import Command, Ranges, Record, VehicleState, VehicleStatus
-from groundstation.recording import schema
+from groundstation.recording import entities, schema
+from groundstation.recording.changes import SAFE
 from groundstation.review.flight import Flight
+
+_TEXT_S = 0.001
 
 
 class Known(NamedTuple):
@@ -81,10 +84,14 @@ def _statuses(flight: Flight) -> Iterator[VehicleStatus]:
             flight.held(schema.STATUS, t),
         )
     )
+    # Lines of text have whole milliseconds; statuses are tens of them apart.
+    told = [(line.t - _TEXT_S, line.text) for line in flight.texts(entities.UNSAFE)]
     for when, loss, rtt, *codes in numbers.tolist():
         connected, armed, in_air, mode, stream = map(int, codes)
+        unsafe = next((words for since, words in reversed(told) if since <= when - flight.start), "")
         yield VehicleStatus(
             t=when,
+            unsafe=b"" if unsafe == SAFE else unsafe.encode(),
             loss=loss,
             rtt=rtt,
             connected=connected,

@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from groundstation.errors import InputError
+from groundstation.messages import CommandKind
 from groundstation.recording import schema
 from groundstation.recording.parts import parts_of
 from groundstation.review.flight import Flight, Numbers
@@ -84,6 +85,14 @@ def _extent(flight: Flight) -> tuple[int, str]:
     if not is_whole(open_reader(parts_of(flight.path)[-1])):
         n = min(n, int(np.searchsorted(t, t[-1] - _UNSURE_S)))
         ending = ending or f"the recording did not end properly; its last {_UNSURE_S:.0f} s are left out"
+    given = flight.clock(schema.COMMANDED)[
+        flight.series(schema.COMMANDED).values[:, 1] == CommandKind.SETTINGS
+    ]
+    if len(given) and (before := int(np.searchsorted(t, given[0]))) < n:
+        n, ending = (
+            before,
+            f"other settings were taken at {given[0] - flight.start:.3f} s, and which is not recorded",
+        )
     if not n:
         raise InputError(f"{flight.path}: ends before there is anything to check.")
     return n, ending

@@ -5,7 +5,7 @@ from __future__ import annotations
 from groundstation.bus import Bus
 from groundstation.console import Snapshot
 from groundstation.messages import MISSION_PROGRESS, Phase
-from groundstation.training.director import Director
+from groundstation.training.director import Director, Stage
 from groundstation.training.mission import Mission
 from sim.airframe import load_airframe
 from sim.environment.world import World
@@ -24,7 +24,8 @@ class MissionFollower:
 
     def __init__(self, mission: Mission, bus: Bus) -> None:
         radius = load_airframe(mission.vehicle.airframe).radius
-        self.director = Director(mission, World(mission.obstacle), radius)
+        self._begin = lambda: Director(mission, World(mission.obstacle), radius)
+        self.director = self._begin()
         self._progress = bus.publisher(MISSION_PROGRESS)
         self._seen_t = 0.0
         self._controlled_t = 0.0
@@ -32,6 +33,9 @@ class MissionFollower:
     def look(self, view: Snapshot) -> None:
         """Take note of what is new in a snapshot, and tell the bus."""
         status, state, pilot = view.status, view.vehicle, view.pilot
+        if self.director.stage is Stage.DONE and status and status.armed and status.in_air:
+            # Landed, and up again in the same run: that is another flight.
+            self.director = self._begin()
         if status and state and state.valid and state.t > self._seen_t:
             self._seen_t = state.t
             x, y, z, _ = state.position

@@ -36,7 +36,7 @@ class Act:
         hindrance: Says from a snapshot why it cannot be done now, or "" where it can. The pilot and the link
             decide; this only keeps what is plainly impossible from looking possible.
         ask: When to ask back.
-        urgent: Makes things safer, and so works from within dialogs.
+        everywhere: The key that does it on every screen, over dialogs and while text is typed; "" for none.
     """
 
     kind: CommandKind
@@ -45,12 +45,17 @@ class Act:
     explains: str
     hindrance: Callable[[Snapshot], str]
     ask: Ask = Ask.NEVER
-    urgent: bool = False
+    everywhere: str = ""
 
     @property
     def name(self) -> str:
         """The act's name in actions and tests."""
         return self.kind.name.lower()
+
+    @property
+    def urgent(self) -> bool:
+        """It makes things safer, and so is a key away everywhere."""
+        return bool(self.everywhere)
 
     @property
     def keys(self) -> tuple[str, ...]:
@@ -140,10 +145,12 @@ ACTS = (
     Act(_K.DISARM, "D", "Disarm", "Stop the motors on the ground.", _cannot_disarm),
     Act(_K.TAKEOFF, "t", "Take off", "Climb to the mission's altitude, hold.", _cannot_take_off, Ask.REAL),
     Act(_K.ENGAGE, "e", "Engage", "Couple hand and vehicle; centre the handle first.", _cannot_engage),
-    Act(_K.DISENGAGE, "x", "Release", "Uncouple the hand; it holds.", _cannot_disengage, urgent=True),
-    Act(_K.HOLD, "h", "Hold", "Stop and stay there.", _not_in_air, urgent=True),
-    Act(_K.RETURN, "r", "Return", "Fly back to where it was armed.", _not_in_air, urgent=True),
-    Act(_K.LAND, "l", "Land", "Land where it is.", _not_in_air, urgent=True),
-    Act(_K.KILL, "k", "Kill", "Stop the motors at once: it falls.", _cannot_kill, Ask.ALWAYS, urgent=True),
+    Act(_K.DISENGAGE, "x", "Release", "Uncouple the hand; it holds.", _cannot_disengage, everywhere="f5"),
+    Act(_K.HOLD, "h", "Hold", "Stop and stay there.", _not_in_air, everywhere="f2"),
+    Act(_K.RETURN, "r", "Return", "Fly back to where it was armed.", _not_in_air, everywhere="f4"),
+    Act(_K.LAND, "l", "Land", "Land where it is.", _not_in_air, everywhere="f3"),
+    Act(_K.KILL, "k", "Kill", "Stop the motors at once: it falls.", _cannot_kill, Ask.ALWAYS, "f6"),
 )
 BY_NAME = {act.name: act for act in ACTS}
+# In the order of their keys.
+URGENT = tuple(sorted((act for act in ACTS if act.urgent), key=lambda act: act.everywhere))

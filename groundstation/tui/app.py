@@ -7,43 +7,71 @@ out at a steady rate while the screen turns; a screen that hangs is a stick gone
 from __future__ import annotations
 
 import asyncio
-import gc
+import importlib
 import signal
-import sys
 import time
 from collections.abc import Callable, Iterable
 from dataclasses import replace
-from typing import ClassVar
+from typing import ClassVar, cast
 
-from textual.app import App, SystemCommand
+from textual.app import SystemCommand
 from textual.binding import Binding, BindingType
-from textual.screen import Screen
+from textual.driver import Driver
+from textual.screen import ModalScreen, Screen
 
-from groundstation.bus import Bus
-from groundstation.console import Console, Snapshot
-from groundstation.messages import CommandKind, FlightMode, Preset, Severity
+from groundstation.console import Snapshot
+from groundstation.messages import CommandKind, FlightMode, Severity
 from groundstation.run import Run
+from groundstation.training.director import Director
 from groundstation.training.follower import MissionFollower
-from groundstation.tui.acts import ACTS, BY_NAME, Act, Ask, coupled, in_air
+from groundstation.tui.acts import ACTS, URGENT, Act, coupled, in_air
 from groundstation.tui.alarms import Alarms
 from groundstation.tui.alerts import alerts
-from groundstation.tui.choices import CHOICES, CHOICES_BY_NAME, PRESETS_EXPLAINED, Choice, Wishes
+from groundstation.tui.checks import red
+from groundstation.tui.choices import CHOICES, PRESETS_EXPLAINED, Choice
+from groundstation.tui.commanding import Commanding
 from groundstation.tui.frame import Frame, Reader, Supervisor, workspace
 from groundstation.tui.guarding import GuardWatch
 from groundstation.tui.hand import Hand, StickSender
-from groundstation.tui.hangup import HangupWatch
 from groundstation.tui.keepalive import Keepalive
-from groundstation.tui.notes import Answers
-from groundstation.tui.screens.dialog import Confirm, Help
-from groundstation.tui.screens.flight import FlightScreen
+from groundstation.tui.milestones import Milestones
+from groundstation.tui.pages import PAGES, PAGES_BY_NAME
+from groundstation.tui.releases import PREFIX, driver_for
+from groundstation.tui.screens.dialog import Confirm
+from groundstation.tui.screens.flight import STEPS, FlightScreen
+from groundstation.tui.screens.help import Help
+from groundstation.tui.screens.page import Page
 from groundstation.tui.theme import THEME, THEMES, next_theme
 from groundstation.tui.track import History, Track
+from groundstation.tui.viewer import Viewer
+from groundstation.tui.widgets.stick import YAW, stays
 
 _POLL_S = 0.1
-_SWITCH_S = 0.001
+_LOOK_S = 0.5
 
 
-class FlightApp(App[int]):
+def _everywhere() -> list[BindingType]:
+    """Bind what works on every screen: urgent acts also over dialogs and text fields, pages over the latter."""
+    urgent = [
+        Binding(act.everywhere, f"urgent('{act.name}')", act.label, show=False, priority=True)
+        for act in URGENT
+    ]
+    pages = [Binding(page.key, f"page('{page.name}')", page.label, show=False) for page in PAGES]
+    # A key of the stick that is let go moves nothing any more, whatever stands over the flight by then.
+    releases = [
+        Binding(f"{PREFIX}{key}", f"release({axis})", "Let go", show=False, priority=True)
+        for key, axis, _, _ in STEPS
+    ]
+    return [
+        *urgent,
+        *pages,
+        *releases,
+        Binding("f1", "help", "Help", show=False),
+        Binding("ctrl+c,ctrl+q", "quit", "Quit", show=False, priority=True),
+    ]
+
+
+class FlightApp(Commanding):
     """The screen of a run.
 
     Args:
@@ -58,9 +86,7 @@ class FlightApp(App[int]):
     TITLE = "groundstation"
     CSS_PATH = "app.tcss"
     ALLOW_SELECT = False
-    BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("ctrl+c,ctrl+q", "quit", "Quit", show=False, priority=True)
-    ]
+    BINDINGS: ClassVar[list[BindingType]] = _everywhere()
 
     def __init__(
         self,
@@ -72,22 +98,25 @@ class FlightApp(App[int]):
         follower: MissionFollower | None = None,
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
-        super().__init__()
+        super().__init__(run, console)
         for theme in THEMES:
             self.register_theme(theme)
         self.theme = THEME.name
         self.hand = Hand()
-        self._flight_run, self._reader, self._supervisor = run, console, supervisor
-        self._stick, self._clock = stick, clock
-        self._answers = Answers()
-        self._wishes, self._guard = Wishes(), GuardWatch()
+        self._supervisor, self._stick, self._clock = supervisor, stick, clock
+        self._guard = GuardWatch()
         self._track, self._history, self._alarms = Track(), History(), Alarms()
-        self._snapshot = console.snapshot()
         self._started = self._snapshot.t
-        self._next_poll = 0.0
+        self._next_poll = self._next_look = 0.0
         self._keepalive = Keepalive(self._send_stick, clock)
         self._follower = follower
         self._flight = FlightScreen(self.hand if stick is not None else None)
+        self._milestones, self._viewer = Milestones(), Viewer()
+        self._latest: Frame | None = None
+
+    def get_driver_class(self) -> type[Driver]:
+        """Return Textual's driver, or one that hears keys let go."""
+        return driver_for(super().get_driver_class())
 
     def get_default_screen(self) -> Screen[None]:
         """The flight screen is what everything else stands over."""
@@ -125,7 +154,29 @@ class FlightApp(App[int]):
         alarms = self._alarms.look(alerts(frame), snapshot.t)
         if self._alarms.rings(snapshot.t):
             self.bell()
-        self._flight.show(replace(frame, alarms=alarms, muted=self._alarms.muted))
+        frame = self._latest = replace(frame, alarms=alarms, muted=self._alarms.muted)
+        # What stands below a page is not seen, what stands below a dialog is.
+        (self._page or self._flight).show(frame)
+        if snapshot.t >= self._next_look:
+            self._next_look = snapshot.t + _LOOK_S
+            self._look_around(frame)
+
+    def _look_around(self, frame: Frame) -> None:
+        """Show the page that is due, but never in place of what the operator looks at."""
+        if failure := self._viewer.failure():
+            self.notify(f"The viewer: {failure}", severity="warning", timeout=8.0, markup=False)
+        if self.screen is self._flight and (due := self._milestones.page(frame.snapshot, red(frame))):
+            self.action_page(due)
+
+    @property
+    def _page(self) -> Page | None:
+        """The page that stands over the flight, if one does."""
+        return next((screen for screen in self.screen_stack if isinstance(screen, Page)), None)
+
+    @property
+    def director(self) -> Director | None:
+        """Knows how the mission is going, if there is one."""
+        return self._follower.director if self._follower is not None else None
 
     def _frame(self, snapshot: Snapshot) -> Frame:
         return Frame(
@@ -156,57 +207,33 @@ class FlightApp(App[int]):
         """The operator looks elsewhere: let go of the stick."""
         self._flight.let_go()
 
-    def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
-        """Grey what cannot be done now."""
-        table = {"act": BY_NAME, "choose": CHOICES_BY_NAME}.get(action)
-        if table is not None and parameters:
-            asked = table.get(str(parameters[0]))
-            return True if asked is None or not asked.hindrance(self._snapshot) else None
-        return super().check_action(action, parameters)
+    def action_release(self, axis: int) -> None:
+        """A key of the stick was let go: its axis is centred, or in position mode left where it is."""
+        if axis == YAW or self._latest is None or not stays(self._latest):
+            self.hand.place(axis, 0.0)
 
-    def action_act(self, name: str) -> None:
-        """Do one of the operator's acts, asking back where that is due."""
-        act = BY_NAME[name]
-        if act.ask is Ask.NEVER or (act.ask is Ask.REAL and self._flight_run.simulated):
-            self._command(act)
-        elif not self._hindered(act):
-            which = "the simulated" if self._flight_run.simulated else "the REAL"
-            self._ask(f"{act.label} {which} vehicle?", act.explains, act.key, lambda: self._command(act))
+    def action_page(self, name: str) -> None:
+        """Show a page, or go back to the flight where it is shown already."""
+        shown = self._page
+        self.action_fly()
+        if shown is None or name != shown.NAME:
+            module, _, screen = PAGES_BY_NAME[name].screen.partition(":")
+            found = getattr(importlib.import_module(f"groundstation.tui.screens.{module}"), screen)
+            page = cast("type[Page]", found)()
+            self.push_screen(page)
 
-    def action_choose(self, name: str) -> None:
-        """Make one of the operator's choices: go on from what is in effect."""
-        choice, pilot = CHOICES_BY_NAME[name], self._snapshot.pilot
-        if not self._hindered(choice) and pilot is not None:
-            self._send(choice.kind, choice.after(self._wishes.present(choice.kind, pilot)))
+    def action_fly(self) -> None:
+        """Go back to the flight."""
+        while self.screen is not self._flight:
+            self.pop_screen()
 
-    def _choose_preset(self, preset: Preset) -> None:
-        if not self._hindered(CHOICES_BY_NAME["preset"]):
-            self._send(CommandKind.PRESET, preset)
-
-    def _hindered(self, asked: Act | Choice) -> bool:
-        """Say why an act or a choice is not possible, if so."""
-        hindrance = asked.hindrance(self._snapshot)
-        if hindrance:
-            self.notify(f"{asked.label}: {hindrance}.", timeout=3.0, markup=False)
-        return bool(hindrance)
-
-    def _command(self, act: Act) -> None:
-        """Send a command, unless it has become impossible while it was asked about."""
-        if not self._hindered(act):
-            self._send(act.kind)
-
-    def _send(self, kind: CommandKind, value: int = 0) -> None:
-        """Send a command and watch for its answer."""
-        now = self._snapshot.t
-        self._wishes.sent(kind, value, now)
-        self._answers.sent(self._reader.command(kind, value), kind, now)
-
-    def _ask(self, question: str, consequence: str, key: str, then: Callable[[], None]) -> None:
-        def answered(yes: bool | None) -> None:
-            if yes:
-                then()
-
-        self.push_screen(Confirm(question, consequence, key), answered)
+    def action_review(self) -> None:
+        """Open the recording in the viewer."""
+        if coupled(self._snapshot) or in_air(self._snapshot):
+            self.notify("Land first: the viewer takes its time of this machine.", severity="warning")
+            return
+        self._viewer.open(self._flight_run.recording)
+        self.notify("The viewer is starting.", timeout=3.0)
 
     def _end(self, code: int) -> None:
         """Leave at once with an exit code; the pilot lets go when it is ended."""
@@ -229,7 +256,8 @@ class FlightApp(App[int]):
 
     def action_help(self) -> None:
         """Show the keys."""
-        self.push_screen(Help())
+        if not isinstance(self.screen, ModalScreen):
+            self.push_screen(Help(self.settings.buttons))
 
     async def action_quit(self) -> None:
         """Leave; in the air, ask first."""
@@ -237,7 +265,7 @@ class FlightApp(App[int]):
             return
         if in_air(self._snapshot):
             text = "The hand is uncoupled. A coupled vehicle holds; one that lands or returns goes on."
-            self._ask("The vehicle is in the air. Quit?", text, "q", self._leave)
+            self.ask("The vehicle is in the air. Quit?", text, self._leave, key="q")
         else:
             self._leave()
 
@@ -260,6 +288,14 @@ class FlightApp(App[int]):
         for preset, words in PRESETS_EXPLAINED.items():
             title = f"Preset: {preset.name.lower()}"
             yield SystemCommand(title, words, lambda preset=preset: self._choose_preset(preset))
+        for page in PAGES:
+            yield SystemCommand(
+                f"{page.label} ({page.key.upper()})",
+                page.explains,
+                lambda name=page.name: self.action_page(name),
+            )
+        yield SystemCommand("Back to the flight (Esc)", "From any other screen.", self.action_fly)
+        yield SystemCommand("Open the recording in the viewer", "After landing.", self.action_review)
         yield SystemCommand("Centre the stick (space)", "All axes at once.", self._flight.action_centre)
         yield SystemCommand("Seen (enter)", "Take all that is wrong as known.", self.action_acknowledge)
         yield SystemCommand("Bell (u)", "Off, or on again.", self.action_mute)
@@ -273,40 +309,3 @@ class FlightApp(App[int]):
         hindrance = asked.hindrance(self._snapshot)
         words = f"Not now: {hindrance}." if hindrance else asked.explains
         return SystemCommand(f"{asked.label} ({asked.key})", words, then)
-
-
-def run_screen(
-    run: Run,
-    console: Reader,
-    supervisor: Supervisor,
-    stick: StickSender | None,
-    follower: MissionFollower | None = None,
-) -> int:
-    """Show the screen until the operator leaves; return the exit code."""
-    app = FlightApp(run, console, supervisor, stick, follower=follower)
-    # A collection that looks through all the modules again takes 0.2 s, and a stick is stale after 0.1 s.
-    gc.collect()
-    gc.freeze()
-    # Nor may painting keep the stick's thread waiting: it asks for its turn and gets it within a millisecond, and the
-    # young objects of some thousand frames are looked through before all are.
-    sys.setswitchinterval(_SWITCH_S)
-    gc.set_threshold(2_000, 20, 1_000)
-    watch = HangupWatch(sys.stdin.fileno())
-    try:
-        code = app.run()
-    finally:
-        watch.stop()
-    return (app.return_code or 0) if code is None else code
-
-
-def fly_on_screen(run: Run, bus: Bus, supervisor: Supervisor) -> int:
-    """Show the screen of a run whose processes run; return the exit code."""
-    from drivers.stick import StickSender as Sender
-
-    stick = Sender(str(run.hand)) if run.hand else None
-    try:
-        follower = MissionFollower(run.mission, bus) if run.mission else None
-        return run_screen(run, Console(bus, "screen"), supervisor, stick, follower)
-    finally:
-        if stick is not None:
-            stick.close()

@@ -31,7 +31,7 @@ class Reader(Protocol):
         """Return the newest of everything."""
         ...
 
-    def command(self, kind: CommandKind, value: int = 0) -> int:
+    def command(self, kind: CommandKind, value: int = 0, name: str = "", amount: float = 0.0) -> int:
         """Send a command with its value and return its number."""
         ...
 

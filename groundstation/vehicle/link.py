@@ -24,9 +24,11 @@ from groundstation.messages import (
     COMMAND,
     COMMAND_ANSWER,
     OBSTACLES,
+    REASON_TEXT,
     SETPOINT,
     VEHICLE_STATE,
     VEHICLE_STATUS,
+    Command,
     CommandAnswer,
     CommandKind,
     Severity,
@@ -35,10 +37,11 @@ from groundstation.messages import (
     fit,
 )
 from groundstation.run import Run
-from groundstation.vehicle.commander import STEERING, Commander
+from groundstation.vehicle.commander import STEERING, Answer, Commander
 from groundstation.vehicle.gate import Gate
 from groundstation.vehicle.obstacle_view import ObstacleView
 from groundstation.vehicle.offboard import Act, OffboardStream, Seen
+from groundstation.vehicle.parameter_desk import PARAMETER_COMMANDS, ParameterDesk
 from groundstation.vehicle.pump import Pump
 from groundstation.vehicle.round_trip import RoundTrip
 from groundstation.vehicle.telemetry import Notes, VehicleView
@@ -65,6 +68,7 @@ _PILOTS = frozenset(
         CommandKind.CLUTCH,
         CommandKind.PRESET,
         CommandKind.CUES,
+        CommandKind.SETTINGS,
     }
 )
 
@@ -98,6 +102,7 @@ class Link:
         self._commander: Commander | None = None
         self._round_trip: RoundTrip | None = None
         self._obstacles: ObstacleView | None = None
+        self._desk: ParameterDesk | None = None
         self._given = 0
         self._denials: deque[tuple[float, str]] = deque(maxlen=4)
         self._next_status = 0.0
@@ -115,8 +120,11 @@ class Link:
         if self._round_trip:
             self._round_trip.turn()
         for command in self._commands.drain():
-            self._obey(command.number, CommandKind(command.kind), now)
+            self._obey(command, now)
         self._pass_on_sights()
+        if self._desk:
+            for answer in self._desk.pass_on(now, self._view.boots):
+                self._tell(answer, now)
         self._pass_on_notes(now)
         if now >= self._next_status or self._changed():
             self._next_status = now + _STATUS_S
@@ -133,6 +141,10 @@ class Link:
             self._commander.do(CommandKind.HOLD)
             time.sleep(_LEAVE_S)
 
+    def close(self) -> bool:
+        """End what waits for the vehicle; say whether MAVSDK may be taken away now."""
+        return self._desk is None or self._desk.close()
+
     def _discover(self, now: float) -> None:
         if now < self._next_discovery:
             return
@@ -147,6 +159,7 @@ class Link:
         self._commander = Commander(system, altitude)
         self._round_trip = RoundTrip(system, time.monotonic)
         self._obstacles = ObstacleView(system, self._view.yaw, self._notes, time.monotonic)
+        self._desk = ParameterDesk(self._bus, system)
         self._view.attach(system, self._run.settings.rates.telemetry)
         self._status.system_id = system.get_system_id()
         self._bus.event(Severity.INFO, f"Vehicle {self._status.system_id} found on {self._run.url}.")
@@ -178,26 +191,35 @@ class Link:
         if why:
             self._bus.event(Severity.ALARM, f"{why[0].upper()}{why[1:]}.")
 
-    def _obey(self, number: int, kind: CommandKind, now: float) -> None:
+    def _obey(self, command: Command, now: float) -> None:
+        number, kind = command.number, CommandKind(command.kind)
         if kind in _PILOTS:
             return
-        if self._commander is None:
+        if self._commander is None or self._desk is None:
             self._answer(number, kind, ok=False, text="no vehicle is connected", now=now)
+            return
+        if kind in PARAMETER_COMMANDS:
+            if why := self._desk.obey(command, armed=self._view.armed or self._view.in_air):
+                self._answer(number, kind, ok=False, text=why, now=now)
             return
         if kind in STEERING:
             self._stream.end()
             self._gate.close()
         self._commander.do(kind, number)
 
+    def _tell(self, answer: Answer, now: float) -> None:
+        self._answer(answer.number, answer.kind, ok=answer.ok, text=answer.why, now=now)
+
     def _collect_answers(self, now: float) -> None:
         commander = self._commander
         while commander and not commander.answers.empty():
-            number, kind, ok, why = commander.answers.get()
-            if number:
-                self._answer(number, kind, ok=ok, text=why, now=now)
-            elif not ok:
+            answer = commander.answers.get()
+            if answer.number:
+                self._tell(answer, now)
+            elif not answer.ok:
                 self._bus.event(
-                    Severity.ALARM, f"The vehicle was told to hold, but {why}; its own failsafe remains."
+                    Severity.ALARM,
+                    f"The vehicle was told to hold, but {answer.why}; its own failsafe remains.",
                 )
         while commander and not commander.offboard_answers.empty():
             ok, heard, why = commander.offboard_answers.get()
@@ -208,13 +230,12 @@ class Link:
                 self._do(*(stream.refused(self._with_reason(why, now)) if heard else stream.unanswered()))
 
     def _answer(self, number: int, kind: CommandKind, *, ok: bool, text: str, now: float) -> None:
-        words = "" if ok else f"{kind.name.capitalize()} refused: {self._with_reason(text, now)}."
+        name = kind.name.capitalize().replace("_", " ")
+        words = "" if ok else f"{name} refused: {self._with_reason(text, now)}."
         answer = CommandAnswer(t=now, number=number, kind=int(kind), ok=int(ok))
         answer.text = fit(words, ANSWER_TEXT)
         self._answers.send(answer)
-        self._bus.event(
-            Severity.INFO if ok else Severity.WARNING, words or f"{kind.name.capitalize()} accepted."
-        )
+        self._bus.event(Severity.INFO if ok else Severity.WARNING, words or f"{name} accepted.")
 
     def _with_reason(self, why: str, now: float) -> str:
         """Add what the vehicle itself said in the last moment; its words are better than a result code."""
@@ -260,6 +281,7 @@ class Link:
         status.connected = int(view.connected())
         status.armed, status.in_air = int(view.armed), int(view.in_air)
         status.mode, status.streaming = int(view.mode), int(self._stream.state)
+        status.unsafe = fit(self._desk.unsafe if self._desk else "", REASON_TEXT)
         self._statuses.send(status)
         self._watch_silence(now)
 
@@ -298,8 +320,10 @@ def body(run: Run, bus: Bus, lifeline: Lifeline) -> None:
             link.wait()
         link.leave()
     finally:
+        free = link.close()
         pump.stop()
-        mav.destroy()
+        if free:
+            mav.destroy()
         if tlog:
             tlog.close()
         mavsdk.log_unsubscribe()

@@ -70,6 +70,7 @@ class VehicleView:
     Attributes:
         attitudes: Those that came and were not taken yet.
         fresh: A position came since `take_state` was last called.
+        boots: How often it has started anew.
         mode_t: When the heartbeat came that `mode` is from, s.
     """
 
@@ -90,6 +91,7 @@ class VehicleView:
         self.in_air = False
         self.battery = math.nan
         self.voltage = math.nan
+        self.boots = 0
         self.health = Health(0)
 
     def attach(self, system: System, rate: float) -> None:
@@ -126,6 +128,7 @@ class VehicleView:
         boot_t = angle.timestamp_us * 1e-6
         if boot_t < self._state.boot_t - 1.0:
             self._origin = Origin()
+            self.boots += 1
             self._notes.put((Severity.ALARM, "The vehicle has rebooted; the world's origin starts anew."))
         state = self._state
         state.boot_t = boot_t

@@ -2,21 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import ClassVar
 
-from rich.table import Table
-from rich.text import Text
+from textual import on
 from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
-from textual.containers import Vertical, VerticalScroll
+from textual.containers import Vertical
 from textual.screen import ModalScreen
-from textual.widgets import Static
+from textual.widgets import Input, Static
 
-from groundstation.messages import CommandKind
 from groundstation.tui.acts import ACTS, BY_NAME
-from groundstation.tui.choices import CHOICES, CUES
-from groundstation.tui.screens.flight import STEPS
-from groundstation.tui.theme import STYLES, Tone
 
 
 def _urgent() -> list[BindingType]:
@@ -52,7 +48,8 @@ class Confirm(Dialog):
     Args:
         question: What is asked.
         consequence: What happens then.
-        key: The key that says yes, besides y.
+        key: The key that says yes, besides y; "" for none.
+        within: It is taken back by itself after this, s; 0 for never.
     """
 
     BINDINGS: ClassVar[list[BindingType]] = [
@@ -60,16 +57,29 @@ class Confirm(Dialog):
         Binding("n,N", "answer(False)", "No", show=False),
     ]
 
-    def __init__(self, question: str, consequence: str, key: str = "y") -> None:
+    def __init__(self, question: str, consequence: str, key: str = "", within: float = 0.0) -> None:
         super().__init__()
-        self._question, self._consequence, self._key = question, consequence, key
-        self._bindings.bind(key, "answer(True)", "Yes", show=False)
+        self._question, self._consequence, self._key, self._within = question, consequence, key, within
+        if key:
+            self._bindings.bind(key, "answer(True)", "Yes", show=False)
+
+    def on_mount(self) -> None:
+        """Let the question run out where it does."""
+        if self._within:
+            self.set_timer(self._within, self._run_out)
+
+    def _run_out(self) -> None:
+        if self.is_current:
+            self.app.notify(f"{self._question} Not confirmed: nothing was done.", timeout=3.0, markup=False)
+            self.dismiss(result=False)
+
+    def asks_for(self, name: str) -> bool:
+        """Say whether it is this act that is asked about."""
+        return self._question.startswith(BY_NAME[name].label)
 
     async def action_urgent(self, name: str) -> None:
-        """Take the act that is asked about as a yes; others are done at once."""
-        if BY_NAME[name].key == self._key:
-            self.dismiss(result=True)
-        else:
+        """Do another act at once; the one that is asked about waits for its answer."""
+        if not self.asks_for(name):
             await super().action_urgent(name)
 
     def compose(self) -> ComposeResult:
@@ -77,62 +87,45 @@ class Confirm(Dialog):
         with Vertical(id="dialog"):
             yield Static(f"▲ {self._question}", id="question", markup=False)
             yield Static(self._consequence, id="consequence", markup=False)
-            yes = "y" if self._key == "y" else f"{self._key} again or y"
-            yield Static(f"{yes}  yes      n or Esc  no", id="answers", markup=False)
+            yes = f"{self._key} again or y" if self._key else "y"
+            limit = f"      within {self._within:.0f} s" if self._within else ""
+            yield Static(f"{yes}  yes      n or Esc  no{limit}", id="answers", markup=False)
 
 
-class Help(Dialog):
-    """All keys, from the tables that bind them."""
+class Typed(ModalScreen[str | None]):
+    """Asks for something that is typed: no key that slips does it.
 
-    BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("question_mark,f1,q", "answer(False)", "Back", show=False),
-    ]
+    Args:
+        question: What is asked.
+        consequence: What happens then.
+        wrong: Says of what was typed why it will not do, or "".
+        value: To begin with.
+    """
+
+    ALLOW_SELECT = False
+    BINDINGS: ClassVar[list[BindingType]] = [Binding("escape", "leave", "Back", show=False)]
+
+    def __init__(self, question: str, consequence: str, wrong: Callable[[str], str], value: str = "") -> None:
+        super().__init__()
+        self._question, self._consequence, self._wrong, self._value = question, consequence, wrong, value
 
     def compose(self) -> ComposeResult:
-        """Lay out the keys."""
-        with VerticalScroll(id="help"):
-            yield Static(help_table())
+        """Lay out question, consequence and the field."""
+        with Vertical(id="dialog"):
+            yield Static(f"▲ {self._question}", id="question", markup=False)
+            yield Static(self._consequence, id="consequence", markup=False)
+            yield Input(self._value, id="typed", select_on_focus=False)
+            yield Static("Enter  yes      Esc  no", id="answers", markup=False)
 
+    @on(Input.Submitted)
+    def take(self, event: Input.Submitted) -> None:
+        """Take what was typed, or say why not."""
+        typed = event.value.strip()
+        if why := self._wrong(typed):
+            self.query_one("#answers", Static).update(f"▲ {why}")
+        else:
+            self.dismiss(typed)
 
-def help_table() -> Table:
-    """Return the keys as a table of key, name and what it does."""
-    table = Table.grid(padding=(0, 1))
-    table.add_column(justify="right", style=STYLES[Tone.KEY], no_wrap=True)
-    table.add_column(style=STYLES[Tone.TEXT], no_wrap=True)
-    table.add_column(style=STYLES[Tone.MUTED])
-    for act in ACTS:
-        table.add_row(act.key, act.label, act.explains)
-    _section(table, "choices", "at any time")
-    for choice in CHOICES:
-        if choice.kind is not CommandKind.CUES:
-            table.add_row(choice.key, choice.label, choice.explains)
-    _section(table, "cues", "parts of the force; on, or off again")
-    for choice in CUES.values():
-        table.add_row(choice.key, choice.name, choice.explains)
-    _section(table, "stick", "on the screen; steps of 20 % that stay")
-    arrows = {"up": "↑", "down": "↓", "left": "←", "right": "→"}
-    for key, _, _, words in STEPS:
-        table.add_row(arrows.get(key, key), words)
-    table.add_row("space", "centre", "All axes at once; also 0.")
-    table.add_row("mouse", "drag", "Press in a pad and drag; letting go centres, in rate mode.")
-    _section(table, "screen", "")
-    table.add_row("?", "help", "Esc goes back.")
-    table.add_row("^p", "palette", "All acts by name.")
-    table.add_row("q", "quit", "Asks first in the air; the vehicle holds.")
-    _section(table, "signs", "")
-    table.add_row("▲ ■", "severity", "Caution, alarm.")
-    table.add_row(Text("abc", STYLES[Tone.STALE]), "slanted", "Old: do not trust it.")
-    table.add_row(
-        Text("□", STYLES[Tone.HAND]), "p_h", "Where the hand wants the vehicle; around it the leash."
-    )
-    table.add_row(Text("△ ×", STYLES[Tone.VEHICLE]), "forecast", "Where it will be; where it can stop.")
-    table.add_row(Text("POS", STYLES[Tone.FORCE]), "cue", "In capitals: acts. ○ off, – not in this preset.")
-    table.add_row("↓", "gain", "The delay leaves less than is set.")
-    table.add_row(Text("◎", STYLES[Tone.TARGET]), "target", "Where the mission leads.")
-    table.add_row("+ −", "axes", "Positive is forward, left, up, turning left.")
-    return table
-
-
-def _section(table: Table, title: str, words: str) -> None:
-    table.add_row("", "", "")
-    table.add_row("", Text(title, STYLES[Tone.STRONG]), words)
+    def action_leave(self) -> None:
+        """Leave without."""
+        self.dismiss(None)

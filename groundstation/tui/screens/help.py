@@ -1,0 +1,96 @@
+"""Help: all keys, from the tables that bind them."""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+from rich.table import Table
+from rich.text import Text
+from textual.app import ComposeResult
+from textual.binding import Binding, BindingType
+from textual.containers import VerticalScroll
+from textual.widgets import Static
+
+from groundstation.config import Buttons
+from groundstation.messages import CommandKind
+from groundstation.tui.acts import ACTS, URGENT
+from groundstation.tui.buttons import button_map
+from groundstation.tui.choices import CHOICES, CUES
+from groundstation.tui.pages import PAGES
+from groundstation.tui.screens.dialog import Dialog
+from groundstation.tui.screens.flight import STEPS
+from groundstation.tui.theme import STYLES, Tone
+
+
+class Help(Dialog):
+    """All keys and buttons.
+
+    Args:
+        buttons: What the device's buttons do.
+    """
+
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("question_mark,f1,q", "answer(False)", "Back", show=False),
+    ]
+
+    def __init__(self, buttons: Buttons) -> None:
+        super().__init__()
+        self._buttons = buttons
+
+    def compose(self) -> ComposeResult:
+        """Lay out the keys."""
+        with VerticalScroll(id="help"):
+            yield Static(help_table(self._buttons))
+
+
+def help_table(buttons: Buttons) -> Table:
+    """Return the keys as a table of key, name and what it does."""
+    table = Table.grid(padding=(0, 1))
+    table.add_column(justify="right", style=STYLES[Tone.KEY], no_wrap=True)
+    table.add_column(style=STYLES[Tone.TEXT], no_wrap=True)
+    table.add_column(style=STYLES[Tone.MUTED])
+    for act in ACTS:
+        table.add_row(f"{act.key} {act.everywhere.upper()}".strip(), act.label, act.explains)
+    table.add_row(
+        "", "", f"{URGENT[0].everywhere.upper()} to {URGENT[-1].everywhere.upper()} work over dialogs, too."
+    )
+    _section(table, "screens", "Esc or the same key goes back to the flight")
+    for page in PAGES:
+        table.add_row(page.key.upper(), page.label, page.explains)
+    _section(table, "choices", "at any time")
+    for choice in CHOICES:
+        if choice.kind is not CommandKind.CUES:
+            table.add_row(choice.key, choice.label, choice.explains)
+    _section(table, "cues", "parts of the force; on, or off again")
+    for choice in CUES.values():
+        table.add_row(choice.key, choice.name, choice.explains)
+    _section(table, "stick", "on the screen; steps of 20 % that stay")
+    arrows = {"up": "↑", "down": "↓", "left": "←", "right": "→"}
+    for key, _, _, words in STEPS:
+        table.add_row(arrows.get(key, key), words)
+    table.add_row("space", "centre", "All axes at once; also 0.")
+    table.add_row("mouse", "drag", "Press in a pad and drag; letting go centres, in rate mode.")
+    _section(table, "buttons", "of the haptic device, from 0")
+    for number, words in button_map(buttons):
+        table.add_row(str(number), "button", words[0].upper() + words[1:] + ".")
+    _section(table, "screen", "")
+    table.add_row("? F1", "help", "Esc goes back.")
+    table.add_row("^p", "palette", "All acts by name.")
+    table.add_row("q", "quit", "Asks first in the air; the vehicle holds.")
+    _section(table, "signs", "")
+    table.add_row("▲ ■", "severity", "Caution, alarm.")
+    table.add_row(Text("abc", STYLES[Tone.STALE]), "slanted", "Old: do not trust it.")
+    table.add_row(
+        Text("□", STYLES[Tone.HAND]), "p_h", "Where the hand wants the vehicle; around it the leash."
+    )
+    table.add_row(Text("△ ×", STYLES[Tone.VEHICLE]), "forecast", "Where it will be; where it can stop.")
+    table.add_row(Text("POS", STYLES[Tone.FORCE]), "cue", "In capitals: acts. ○ off, – not in this preset.")
+    table.add_row("↓", "gain", "The delay leaves less than is set.")
+    table.add_row(Text("◎", STYLES[Tone.TARGET]), "target", "Where the mission leads.")
+    table.add_row("+ −", "axes", "Positive is forward, left, up, turning left.")
+    return table
+
+
+def _section(table: Table, title: str, words: str) -> None:
+    table.add_row("", "", "")
+    table.add_row("", Text(title, STYLES[Tone.STRONG]), words)

@@ -1,0 +1,78 @@
+"""The vehicle's parameters on the bus: commands come in, what was read goes out; are its failsafes safe?"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from mavsdk import System
+
+from groundstation.bus import Bus
+from groundstation.clock import Every
+from groundstation.messages import PARAMETER, PARAMETER_TEXT, Command, CommandKind, Parameter, fit
+from groundstation.vehicle.commander import Answer
+from groundstation.vehicle.failsafes import FAILSAFES, unsafe
+from groundstation.vehicle.parameters import Parameters, cannot_be_set
+
+_JUDGED = frozenset(each.name for each in FAILSAFES)
+_AGAIN_S = 1.0
+PARAMETER_COMMANDS = frozenset({CommandKind.PARAMETERS, CommandKind.SET_PARAMETER})
+
+
+class ParameterDesk:
+    """Between the bus and the thread that reads and sets.
+
+    Args:
+        bus: Where what was read goes.
+        system: The vehicle.
+    """
+
+    def __init__(self, bus: Bus, system: System) -> None:
+        self._parameters = Parameters(system)
+        self._publisher = bus.publisher(PARAMETER)
+        self._whole: dict[str, bool] = {}
+        self._judged: dict[str, Parameter] = {}
+        self._again = Every(_AGAIN_S)
+        self._boots = 0
+
+    @property
+    def unsafe(self) -> str:
+        """Why the vehicle's failsafes keep the hand from being coupled, or ""."""
+        return unsafe(self._parameters.failsafes)
+
+    def obey(self, command: Command, *, armed: bool) -> str:
+        """Begin what is asked for; return why it is refused at once, or ""."""
+        if command.kind == CommandKind.PARAMETERS:
+            self._parameters.fetch_all(command.number)
+            return ""
+        name, amount = command.name.decode(), command.amount
+        whole = self._whole.get(name)
+        if whole is None:
+            return f"{name} has not been read; read the parameters first"
+        if not (why := cannot_be_set(amount, whole=whole, armed=armed)):
+            self._parameters.set(command.number, name, amount, whole=whole)
+        return why
+
+    def pass_on(self, now: float, boots: int) -> Iterator[Answer]:
+        """Send what was read, and yield the answers; a vehicle that has started anew is read anew."""
+        if boots != self._boots:
+            self._boots = boots
+            self._parameters.forget()
+            self._judged.clear()
+        while not self._parameters.read.empty():
+            read = self._parameters.read.get()
+            self._whole[read.name] = read.whole
+            record = Parameter(t=now, value=read.value, whole=read.whole, count=read.total)
+            record.name = fit(read.name, PARAMETER_TEXT)
+            self._publisher.send(record)
+            if read.name in _JUDGED:
+                self._judged[read.name] = record
+        if self._again.due(now):
+            # Who has come meanwhile gets to know what the failsafes are.
+            for record in self._judged.values():
+                self._publisher.send(record)
+        while not self._parameters.answers.empty():
+            yield self._parameters.answers.get()
+
+    def close(self) -> bool:
+        """End the thread; say whether MAVSDK may be taken away now."""
+        return self._parameters.close()

@@ -1,0 +1,154 @@
+"""The vehicle's parameters through MAVSDK: its calls wait for the vehicle, so a thread of their own makes them.
+
+What the thread reads and sets comes out of queues; the link's loop never waits.
+"""
+
+from __future__ import annotations
+
+import queue
+import threading
+import time
+from collections.abc import Callable
+from typing import NamedTuple
+
+from mavsdk import System
+from mavsdk.plugins.param import Param, ParamError, ParamResult
+
+from groundstation.messages import CommandKind
+from groundstation.vehicle.commander import Answer
+from groundstation.vehicle.failsafes import FAILSAFES
+
+# A failsafe that the vehicle did not tell is asked for again after this, s.
+_AGAIN_S = 2.0
+_END_S = 5.0
+# An integer travels in a float's 32 bits.
+_WHOLE_MOST = 2**31
+
+_WORDS = {
+    ParamResult.TIMEOUT: "the vehicle did not answer; check the link",
+    ParamResult.DOES_NOT_EXIST: "the vehicle has no such parameter",
+    ParamResult.VALUE_OUT_OF_RANGE: "the vehicle does not allow that value",
+    ParamResult.READ_ONLY: "the vehicle does not let it be set",
+    ParamResult.WRONG_TYPE: "it is of another type",
+}
+
+
+class Read(NamedTuple):
+    """A parameter's value; `total` is how many there are where all were read, else 0."""
+
+    name: str
+    value: float
+    whole: bool
+    total: int = 0
+
+
+class Parameters:
+    """Reads and sets parameters on a thread; the failsafes are read first, and until they are known.
+
+    Args:
+        system: The vehicle.
+
+    Attributes:
+        read, answers: What came since they were last emptied.
+        failsafes: Values of those that are judged, by name.
+    """
+
+    def __init__(self, system: System) -> None:
+        self._param = Param(system)
+        self._work: queue.SimpleQueue[Callable[[], None] | None] = queue.SimpleQueue()
+        self._over = threading.Event()
+        self.read: queue.SimpleQueue[Read] = queue.SimpleQueue()
+        self.answers: queue.SimpleQueue[Answer] = queue.SimpleQueue()
+        self.failsafes: dict[str, float] = {}
+        self._thread = threading.Thread(target=self._run, name="parameters", daemon=True)
+        self._thread.start()
+
+    def fetch_all(self, number: int) -> None:
+        """Read every parameter; the answer has the command's number."""
+        self._work.put(lambda: self._fetch_all(number))
+
+    def set(self, number: int, name: str, amount: float, *, whole: bool) -> None:
+        """Set a parameter, and read it back."""
+        self._work.put(lambda: self._set(number, name, amount, whole=whole))
+
+    def forget(self) -> None:
+        """The vehicle has started anew: what was read need not be true any more."""
+        self.failsafes = {}
+        self._work.put(lambda: None)
+
+    def close(self) -> bool:
+        """End the thread; say whether it has ended, for MAVSDK must not be taken from under it."""
+        self._over.set()
+        self._work.put(None)
+        self._thread.join(_END_S)
+        return not self._thread.is_alive()
+
+    def _run(self) -> None:
+        next_look = 0.0
+        while not self._over.is_set():
+            if time.monotonic() >= next_look and self._missing():
+                self._read_failsafes()
+                next_look = time.monotonic() + _AGAIN_S
+            try:
+                work = self._work.get(timeout=_AGAIN_S / 4 if self._missing() else None)
+            except queue.Empty:
+                continue
+            if work is not None:
+                work()
+
+    def _missing(self) -> bool:
+        return len(self.failsafes) < len(FAILSAFES)
+
+    def _read_failsafes(self) -> None:
+        for failsafe in FAILSAFES:
+            if failsafe.name not in self.failsafes and not self._over.is_set():
+                try:
+                    value = self._value(failsafe.name, whole=failsafe.whole)
+                except ParamError as error:
+                    # It is asked for again; until then the hand is not coupled, and the screen says why.
+                    if error.result is ParamResult.TIMEOUT:
+                        return
+                else:
+                    self._take(Read(failsafe.name, value, failsafe.whole))
+
+    def _fetch_all(self, number: int) -> None:
+        every = self._param.get_all_params()
+        found = [Read(each.name, float(each.value), whole=True) for each in every.int_params]
+        found += [Read(each.name, float(each.value), whole=False) for each in every.float_params]
+        for each in found:
+            self._take(each._replace(total=len(found)))
+        why = "" if found else "the vehicle told no parameter; check the link"
+        self.answers.put(Answer(number, CommandKind.PARAMETERS, bool(found), why))
+
+    def _set(self, number: int, name: str, amount: float, *, whole: bool) -> None:
+        kind = CommandKind.SET_PARAMETER
+        try:
+            if whole:
+                self._param.set_param_int(name, int(amount))
+            else:
+                self._param.set_param_float(name, amount)
+            self._take(Read(name, self._value(name, whole=whole), whole))
+        except ParamError as error:
+            why = _WORDS.get(error.result, str(error.result.name).replace("_", " ").lower())
+            self.answers.put(Answer(number, kind, ok=False, why=f"{name}: {why}"))
+        else:
+            self.answers.put(Answer(number, kind, ok=True, why=""))
+
+    def _value(self, name: str, *, whole: bool) -> float:
+        return float(self._param.get_param_int(name) if whole else self._param.get_param_float(name))
+
+    def _take(self, read: Read) -> None:
+        if any(read.name == each.name for each in FAILSAFES):
+            self.failsafes = self.failsafes | {read.name: read.value}
+        self.read.put(read)
+
+
+def cannot_be_set(amount: float, *, whole: bool, armed: bool) -> str:
+    """Return why a parameter is not set to an amount, or ""; the vehicle itself knows its range."""
+    if armed:
+        return "the vehicle is armed; disarm it first"
+    if not abs(amount) < _WHOLE_MOST:
+        return "that is no number that a parameter can have"
+    if whole and amount != int(amount):
+        return "it takes whole numbers only"
+    return ""

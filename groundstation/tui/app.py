@@ -24,6 +24,8 @@ from groundstation.messages import CommandKind, FlightMode, Preset, Severity
 from groundstation.run import Run
 from groundstation.training.follower import MissionFollower
 from groundstation.tui.acts import ACTS, BY_NAME, Act, Ask, coupled, in_air
+from groundstation.tui.alarms import Alarms
+from groundstation.tui.alerts import conditions
 from groundstation.tui.choices import CHOICES, CHOICES_BY_NAME, PRESETS_EXPLAINED, Choice, Wishes
 from groundstation.tui.frame import Frame, Reader, Supervisor, workspace
 from groundstation.tui.guarding import GuardWatch
@@ -31,9 +33,10 @@ from groundstation.tui.hand import Hand, StickSender
 from groundstation.tui.hangup import HangupWatch
 from groundstation.tui.keepalive import Keepalive
 from groundstation.tui.notes import Answers
+from groundstation.tui.pace import PaintPace
 from groundstation.tui.screens.dialog import Confirm, Help
 from groundstation.tui.screens.flight import FlightScreen
-from groundstation.tui.theme import THEME
+from groundstation.tui.theme import THEME, THEMES, next_theme
 from groundstation.tui.track import History, Track
 
 _POLL_S = 0.1
@@ -56,7 +59,10 @@ class FlightApp(App[int]):
     CSS_PATH = "app.tcss"
     ALLOW_SELECT = False
     BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("ctrl+c,ctrl+q", "quit", "Quit", show=False, priority=True)
+        Binding("ctrl+c,ctrl+q", "quit", "Quit", show=False, priority=True),
+        Binding("ctrl+t", "next_theme", "Next theme", show=False, priority=True),
+        Binding("o,O", "acknowledge", "Alarms seen", show=False),
+        Binding("b,B", "mute", "Bell on/off", show=False),
     ]
 
     def __init__(
@@ -70,7 +76,8 @@ class FlightApp(App[int]):
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
         super().__init__()
-        self.register_theme(THEME)
+        for theme in THEMES:
+            self.register_theme(theme)
         self.theme = THEME.name
         self.hand = Hand()
         self._flight_run, self._reader, self._supervisor = run, console, supervisor
@@ -78,6 +85,7 @@ class FlightApp(App[int]):
         self._answers = Answers()
         self._wishes, self._guard = Wishes(), GuardWatch()
         self._track, self._history = Track(), History()
+        self._alarms, self._pace = Alarms(), PaintPace(run.settings.rates.screen)
         self._snapshot = console.snapshot()
         self._started = self._snapshot.t
         self._next_poll = 0.0
@@ -114,9 +122,15 @@ class FlightApp(App[int]):
             self.notify(note.text, severity=severity, timeout=6.0, markup=False)
         stale_s = self._flight_run.settings.safety.state_stale_s
         if snapshot.vehicle is not None and snapshot.vehicle.valid:
-            self._track.add(snapshot.vehicle.position[0], snapshot.vehicle.position[1])
+            east, north, up, _ = snapshot.vehicle.position
+            self._track.add(east, north, up, snapshot.vehicle.t)
         self._history.add(snapshot, stale_s)
-        self._flight.show(self._frame(snapshot))
+        frame = self._frame(snapshot)
+        self._alarms.look(conditions(frame), snapshot.t)
+        if self._alarms.ring(snapshot.t):
+            self.bell()
+        if self._pace.due(self._clock()):
+            self._flight.show(frame)
 
     def _frame(self, snapshot: Snapshot) -> Frame:
         return Frame(
@@ -130,6 +144,9 @@ class FlightApp(App[int]):
             notes=tuple(self._answers.notes),
             track=self._track,
             history=self._history,
+            figures=self._follower.director.figures if self._follower is not None else None,
+            alarms=self._alarms,
+            paint_hz=self._pace.rate,
         )
 
     def _send_stick(self) -> None:
@@ -203,6 +220,18 @@ class FlightApp(App[int]):
         self.hand.centre()
         self.exit(code)
 
+    def action_next_theme(self) -> None:
+        """Change to the next theme: dark, light, high contrast."""
+        self.theme = next_theme(self.theme)
+
+    def action_acknowledge(self) -> None:
+        """Take all alarms as seen."""
+        self._alarms.acknowledge()
+
+    def action_mute(self) -> None:
+        """Silence the bell, or let it ring again."""
+        self._alarms.muted = not self._alarms.muted
+
     def action_help(self) -> None:
         """Show the keys."""
         self.push_screen(Help())
@@ -237,6 +266,10 @@ class FlightApp(App[int]):
             title = f"Preset: {preset.name.lower()}"
             yield SystemCommand(title, words, lambda preset=preset: self._choose_preset(preset))
         yield SystemCommand("Centre the stick (space)", "All axes at once.", self._flight.action_centre)
+        yield SystemCommand("Alarms seen (o)", "Acknowledge all alarms.", self.action_acknowledge)
+        yield SystemCommand("Bell on/off (b)", "The bell rings for alarms.", self.action_mute)
+        yield SystemCommand("Next theme (ctrl+t)", "Dark, light, high contrast.", self.action_next_theme)
+        yield from self._flight.commands()
         yield SystemCommand("Help (?)", "All keys.", self.action_help)
         yield SystemCommand("Quit (q)", "Asks first while the vehicle is in the air.", self.action_quit)
 

@@ -1,4 +1,4 @@
-"""The map from above as pure drawing, what moves: way flown, vehicle, where it will be, hand, echoes."""
+"""A flat map as pure drawing, what moves: way flown, vehicle, where it will be, hand, echoes. World points are m, ENU."""
 
 from __future__ import annotations
 
@@ -9,12 +9,16 @@ import numpy as np
 
 from groundstation.messages import RING_SECTORS
 from groundstation.tui.canvas import Canvas
-from groundstation.tui.scene import Floats, View, ring
+from groundstation.tui.scene import ring
 from groundstation.tui.theme import Tone
+from groundstation.tui.view import TOP, Floats, View
 
-# East and north, m, and yaw counter-clockwise from east, rad.
-Pose = tuple[float, float, float]
+# East, north and up, m, and yaw counter-clockwise from east, rad.
+Pose = tuple[float, float, float, float]
+Place = tuple[float, float, float]
 
+# The way flown is bright while it is this young, then dimmer, then only every other dot, s.
+FRESH_S, FADED_S = 6.0, 25.0
 # An arrowhead of length 1.6 with a notched tail: x forward, y left. Its outline, and the dots within.
 _OUTLINE = np.array([(1.0, 0.0), (-0.6, 0.56), (-0.25, 0.0), (-0.6, -0.56), (1.0, 0.0)])
 _ARROW = np.array(
@@ -26,45 +30,55 @@ _APART = 2.0
 _SECTORS = np.arange(RING_SECTORS) * (math.tau / RING_SECTORS)
 
 
-def draw_trail(canvas: Canvas, view: View, points: Floats) -> None:
-    """Draw the way flown.
+def tones_by_age(age: Floats) -> np.ndarray[tuple[int], np.dtype[np.uint8]]:
+    """Return the tone of each point of the way flown by its age, s."""
+    tones = np.where(age < FADED_S, np.uint8(Tone.TRAIL), np.uint8(Tone.FADED))
+    return np.where(age < FRESH_S, np.uint8(Tone.VEHICLE), tones)
+
+
+def draw_trail(canvas: Canvas, view: View, points: Floats, now: float) -> None:
+    """Draw the way flown: the older, the dimmer and the sparser.
 
     Args:
         canvas: Drawn on.
         view: What it shows.
-        points: East and north, m, shape (n, 2).
+        points: East, north, up, m, and time, s, shape (n, 4).
+        now: s.
     """
-    if len(points):
-        canvas.plot(view.x(points[:, 0]), view.y(points[:, 1]), Tone.TRAIL)
+    if not len(points):
+        return
+    x, y = view.dots(points)
+    age = now - points[:, 3]
+    shown = (age < FADED_S) | (np.arange(len(points)) % 2 == 0)
+    canvas.plot(x[shown], y[shown], tones_by_age(age[shown]))
 
 
-def draw_vehicle(canvas: Canvas, view: View, east: float, north: float, yaw: float) -> None:
-    """Draw the vehicle as an arrowhead that is always well seen; yaw counter-clockwise from east, rad."""
-    if all(map(math.isfinite, (east, north, yaw))):
-        canvas.plot(*_turned(view, _ARROW, (east, north, yaw)), Tone.VEHICLE)
+def draw_vehicle(canvas: Canvas, view: View, seen: Pose) -> None:
+    """Draw the vehicle as an arrowhead that is always well seen."""
+    if all(map(math.isfinite, seen)):
+        x, y = _turned(view, _ARROW, seen)
+        canvas.plot(x, y, Tone.VEHICLE)
 
 
-def draw_predicted(
-    canvas: Canvas, view: View, seen: Pose, predicted: Pose, stop: tuple[float, float]
-) -> None:
+def draw_predicted(canvas: Canvas, view: View, seen: Pose, predicted: Pose, stop: Place) -> None:
     """Draw where the vehicle will be as a hollow arrowhead, and where it can stop as a cross: if that is elsewhere.
 
     Args:
         canvas: Drawn on.
         view: What it shows.
-        seen: Where the vehicle was last seen, m and rad.
+        seen: Where the vehicle was last seen.
         predicted: Where it will be when what is sent now reaches it.
-        stop: Where it comes to rest with a centred handle, m.
+        stop: Where it comes to rest with a centred handle.
     """
     if not all(map(math.isfinite, (*seen, *predicted, *stop))):
         return
-    if math.dist(seen[:2], predicted[:2]) >= _APART * view.scale:
+    now, then, end = view.plane.flat(seen), view.plane.flat(predicted), view.plane.flat(stop)
+    if math.dist(now, then) >= _APART * view.scale:
         canvas.line(*_turned(view, _OUTLINE, predicted), Tone.VEHICLE)
-    if math.dist(seen[:2], stop) < (_APART + _size(view)) * view.scale:
+    if math.dist(now, end) < (_APART + _size(view)) * view.scale:
         return
-    ends = np.array([predicted[:2], stop])
-    canvas.line(view.x(ends[:, 0]), view.y(ends[:, 1]), Tone.TRAIL, gap=2)
-    x, y = float(view.x(stop[0])), float(view.y(stop[1]))
+    canvas.line(view.x(np.array([then[0], end[0]])), view.y(np.array([then[1], end[1]])), Tone.TRAIL, gap=2)
+    x, y = float(view.x(end[0])), float(view.y(end[1]))
     for side in (2, -2):
         canvas.line([x - 2, x + 2], [y - side, y + side], Tone.VEHICLE)
 
@@ -75,42 +89,39 @@ def draw_echoes(canvas: Canvas, view: View, seen: Pose, distances: Sequence[floa
     Args:
         canvas: Drawn on.
         view: What it shows.
-        seen: Where the vehicle was last seen, m and rad.
+        seen: Where the vehicle was last seen.
         distances: By sectors, counter-clockwise from forward, m; what is not finite is nothing.
         tone: Of the points.
     """
-    east, north, yaw = seen
-    ring_m = np.where(np.isfinite(distances), distances, np.nan)
-    x, y = east + ring_m * np.cos(yaw + _SECTORS), north + ring_m * np.sin(yaw + _SECTORS)
-    canvas.plot(view.x(x), view.y(y), tone)
+    canvas.plot(*view.dots(echoes(seen, distances)), tone)
 
 
-def draw_hand(
-    canvas: Canvas,
-    view: View,
-    place: tuple[float, float],
-    wanted: tuple[float, float],
-    leash: float,
-    *,
-    taut: bool,
-) -> None:
+def echoes(seen: Pose, distances: Sequence[float]) -> Floats:
+    """Return the places that the distance sensors see, world, m, shape (n, 3); NaN for none."""
+    east, north, up, yaw = seen
+    reach = np.where(np.isfinite(distances), distances, np.nan)
+    angles = yaw + _SECTORS
+    return np.stack([east + reach * np.cos(angles), north + reach * np.sin(angles), np.full(len(reach), up)], axis=1)
+
+
+def draw_hand(canvas: Canvas, view: View, place: Place, wanted: Place, leash: float, *, taut: bool) -> None:
     """Draw where the hand wants the vehicle, the line to it, and the leash around the vehicle.
 
     Args:
         canvas: Drawn on.
         view: What it shows.
-        place: The vehicle, m.
-        wanted: p_h, m.
+        place: The vehicle.
+        wanted: p_h.
         leash: Its length, m.
         taut: The leash holds p_h back.
     """
     if not all(map(math.isfinite, (*place, *wanted))):
         return
     tone = Tone.WARN if taut else Tone.HAND
-    ring(canvas, view, (*place, leash), Tone.WARN if taut else Tone.FAINT, gap=3)
+    ring(canvas, view, (*view.plane.flat(place), leash), Tone.WARN if taut else Tone.FAINT, gap=3)
     ends = np.array([place, wanted])
-    canvas.line(view.x(ends[:, 0]), view.y(ends[:, 1]), tone, gap=2)
-    x, y = float(view.x(wanted[0])), float(view.y(wanted[1]))
+    canvas.line(*view.dots(ends), tone, gap=2)
+    x, y = (float(axis[1]) for axis in view.dots(ends))
     canvas.line([x - 2, x + 2, x + 2, x - 2, x - 2], [y - 2, y - 2, y + 2, y + 2, y - 2], tone)
 
 
@@ -120,9 +131,15 @@ def _size(view: View) -> float:
 
 
 def _turned(view: View, shape: Floats, pose: Pose) -> tuple[Floats, Floats]:
-    """Return the dots of a shape, given forward and left in lengths of an arrowhead, at a pose."""
-    east, north, yaw = pose
-    cosine, sine = math.cos(yaw), math.sin(yaw)
+    """Return the dots of a shape, given forward and left in lengths of an arrowhead, at a pose.
+
+    From the side it is as short as it looks from there, and half as high as it is wide from above.
+    """
     forward, left = _size(view) * shape[:, 0], _size(view) * shape[:, 1]
-    x = view.x(east) + cosine * forward - sine * left
-    return x, view.y(north) - (sine * forward + cosine * left)
+    cosine, sine = math.cos(pose[3]), math.sin(pose[3])
+    middle = view.plane.flat(pose)
+    x, y = view.x(middle[0]), view.y(middle[1])
+    if view.plane is TOP:
+        return x + cosine * forward - sine * left, y - (sine * forward + cosine * left)
+    along = (cosine, sine)[view.plane.across]
+    return x + along * forward + 0.35 * (1.0 - abs(along)) * left, y - 0.5 * left

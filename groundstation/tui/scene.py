@@ -1,136 +1,85 @@
-"""The map from above as pure drawing, what stands still: obstacles, fence, route, target. For the rest see `moving`.
-
-North is up, east to the right; dots are square, so one scale holds for both.
-"""
+"""A flat map as pure drawing, what stands still: obstacles, fence, gates, route, target. For the rest see `moving`."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from groundstation.training.mission import Mission
+from groundstation.training.mission import Fence, Mission
 from groundstation.tui.canvas import Canvas
 from groundstation.tui.theme import Tone
+from groundstation.tui.view import TOP, Floats, View
 from sim.environment.shapes import extent, half_height, primitives, reach
-from sim.scenario import Box, Obstacle, Pad, Primitive
+from sim.scenario import Box, Gate, Obstacle, Pad, Primitive, Sphere
 
-Floats = NDArray[np.float64]
-
-# Free flight shows at least this far around the start, m.
-LEAST_HALF_M = 4.0
-MARGIN_M = 1.0
 # What the pilot calls the fence where it guards.
 FENCE = "fence"
-_SCALES = tuple(
-    step * 10.0**power
-    for power in range(-2, 4)
-    for step in (1.0, 1.25, 1.6, 2.0, 2.5, 3.2, 4.0, 5.0, 6.4, 8.0)
-)
+NO_FENCE = Fence(floor=0.0)
 _RULERS = tuple(step * 10.0**power for power in range(-1, 5) for step in (1.0, 2.0, 5.0))
-
-
-@dataclass(frozen=True, slots=True)
-class View:
-    """Which part of the world a canvas shows.
-
-    Attributes:
-        east, north: The world's point in its middle, m.
-        scale: Metres a dot.
-        width, height: Dots.
-    """
-
-    east: float
-    north: float
-    scale: float
-    width: int
-    height: int
-
-    def x(self, east: Floats | float) -> Floats:
-        """Return dots from the left."""
-        return np.asarray((east - self.east) / self.scale + (self.width - 1) / 2)
-
-    def y(self, north: Floats | float) -> Floats:
-        """Return dots from the top."""
-        return np.asarray((self.north - north) / self.scale + (self.height - 1) / 2)
-
-    def holds(self, points: Sequence[tuple[float, float]]) -> bool:
-        """Say whether all points are within the picture, a little off its edge."""
-        across, up = 0.5 * self.scale * (self.width - 6), 0.5 * self.scale * (self.height - 6)
-        return all(
-            abs(east - self.east) <= across and abs(north - self.north) <= up for east, north in points
-        )
-
-
-def framing(mission: Mission | None, points: Sequence[tuple[float, float]], width: int, height: int) -> View:
-    """Return the view that shows the start, the mission and further points, at a scale from a fixed ladder.
-
-    Args:
-        mission: What is flown, or None.
-        points: Further world points [east, north], m, that shall be seen.
-        width: Dots across.
-        height: Dots down.
-    """
-    seen = [(-LEAST_HALF_M / 2, 0.0), (LEAST_HALF_M / 2, 0.0), *points]
-    if mission is not None:
-        seen += [(point[0], point[1]) for point in mission.route]
-        seen += [(mission.target.position[0], mission.target.position[1])] if mission.target else []
-        seen += [corner[:2] for obstacle in mission.obstacle for corner in extent(obstacle)]
-        for pad in mission.pad:
-            east, north, _ = pad.position
-            seen += [(east - pad.radius, north - pad.radius), (east + pad.radius, north + pad.radius)]
-    easts, norths = [point[0] for point in seen], [point[1] for point in seen]
-    spans = (max(easts) - min(easts) + 2 * MARGIN_M, max(norths) - min(norths) + 2 * MARGIN_M)
-    least = max(spans[0] / max(width - 6, 1), spans[1] / max(height - 6, 1))
-    scale = next((scale for scale in _SCALES if scale >= least), _SCALES[-1])
-    return View((max(easts) + min(easts)) / 2, (max(norths) + min(norths)) / 2, scale, width, height)
+# A part this near to the vehicle in the direction that is not seen counts as beside it, m.
+_BESIDE_M = 0.5
+_SIDES = 32
 
 
 def draw_world(
-    canvas: Canvas, view: View, mission: Mission | None, altitude: float, fence: float = 0.0
+    canvas: Canvas, view: View, mission: Mission | None, depth: float, fence: Fence = NO_FENCE
 ) -> None:
-    """Draw what stands still: grid, start, fence, pads, obstacles, route and target.
+    """Draw what stands still: grid, start, fence, pads, obstacles, route, gates and target.
 
     Args:
         canvas: Drawn on.
         view: What it shows.
         mission: What is flown, or None.
-        altitude: The vehicle's, m: what reaches it is drawn solid, the rest as outlines; so a gate's posts are solid
-            and its beams are lines.
-        fence: Its radius around the start, m; 0 for none.
+        depth: Where the vehicle is in the direction that is not seen, from above its altitude, m: what reaches it is
+            drawn solid, the rest as outlines; so a gate's posts are solid and its beams are lines.
+        fence: Where the hand may take the vehicle.
     """
     _grid(canvas, view)
+    if view.plane is not TOP:
+        level = float(view.y(0.0))
+        canvas.line([0, canvas.width - 1], [level, level], Tone.EARTH)
+    draw_fence(canvas, view, fence, Tone.OBSTACLE)
     _cross(canvas, float(view.x(0.0)), float(view.y(0.0)), 2, Tone.MUTED)
-    if fence > 0.0:
-        ring(canvas, view, (0.0, 0.0, fence), Tone.OBSTACLE, gap=2)
     if mission is None:
         return
     for pad in mission.pad:
         _pad(canvas, view, pad)
     for solid, part in sorted(
-        ((beside(part, altitude), part) for part in _parts(mission)), key=lambda each: each[0]
+        ((beside(part, depth, view), part) for part in _parts(mission)), key=lambda each: each[0]
     ):
+        outline = silhouette(part, view)
         if solid:
-            _hatch(canvas, view, part)
-        _outline(canvas, view, part, Tone.BESIDE if solid else Tone.OBSTACLE)
-    if mission.route:
-        way = np.array([(0.0, 0.0), *((east, north) for east, north, _ in mission.route)])
-        canvas.line(view.x(way[:, 0]), view.y(way[:, 1]), Tone.ROUTE, gap=4)
+            _hatch(canvas, view, outline)
+        canvas.line(view.x(outline[:, 0]), view.y(outline[:, 1]), Tone.BESIDE if solid else Tone.OBSTACLE)
+    _route(canvas, view, mission)
+    for gate in gates(mission):
+        _way_through(canvas, view, gate)
     if mission.target is not None:
-        east, north, _ = mission.target.position
-        if mission.route:
-            last = mission.route[-1]
-            canvas.line(
-                view.x(np.array([last[0], east])), view.y(np.array([last[1], north])), Tone.ROUTE, gap=4
-            )
-        ring(canvas, view, (east, north, max(mission.target.radius, 4.0 * view.scale)), Tone.TARGET)
-        _cross(canvas, float(view.x(east)), float(view.y(north)), 1, Tone.TARGET)
+        at = view.plane.flat(mission.target.position)
+        ring(canvas, view, (*at, max(mission.target.radius, 4.0 * view.scale)), Tone.TARGET)
+        _cross(canvas, float(view.x(at[0])), float(view.y(at[1])), 1, Tone.TARGET)
 
 
-def draw_guarded(canvas: Canvas, view: View, mission: Mission | None, name: str, fence: float = 0.0) -> None:
+def draw_fence(canvas: Canvas, view: View, fence: Fence, tone: Tone) -> None:
+    """Draw how far and how high the hand may take the vehicle, dotted."""
+    radius, gap = fence.radius, 1 if tone is Tone.WARN else 2
+    if view.plane is TOP:
+        if radius > 0.0:
+            ring(canvas, view, (0.0, 0.0, radius), tone, gap=gap)
+        return
+    end = radius if radius > 0.0 else 1e4
+    for level in (fence.floor, fence.ceiling):
+        if level > 0.0:
+            canvas.line(view.x(np.array([-end, end])), view.y(np.array([level, level])), tone, gap=2 * gap)
+    if radius > 0.0:
+        top = np.array([fence.floor, fence.ceiling or 1e4])
+        for side in (-radius, radius):
+            canvas.line(view.x(np.array([side, side])), view.y(top), tone, gap=gap)
+
+
+def draw_guarded(canvas: Canvas, view: View, mission: Mission | None, name: str, fence: Fence = NO_FENCE) -> None:
     """Draw what the guard keeps away from so that it stands out: an obstacle with its name, or the fence.
 
     Args:
@@ -138,54 +87,81 @@ def draw_guarded(canvas: Canvas, view: View, mission: Mission | None, name: str,
         view: What it shows.
         mission: What is flown, or None.
         name: As the pilot says it; what has no place on the map is not drawn.
-        fence: Its radius around the start, m; 0 for none.
+        fence: Where the hand may take the vehicle.
     """
     guarded = [obstacle for obstacle in mission.obstacle if obstacle.name == name] if mission else []
     for obstacle in guarded:
         for part in primitives(obstacle):
-            _outline(canvas, view, part, Tone.WARN)
-        _label(canvas, view, obstacle, Tone.WARN)
-    if name == FENCE and fence > 0.0 and not guarded:
-        ring(canvas, view, (0.0, 0.0, fence), Tone.WARN)
+            outline = silhouette(part, view)
+            canvas.line(view.x(outline[:, 0]), view.y(outline[:, 1]), Tone.WARN)
+        _label(canvas, view, obstacle.name, obstacle, Tone.WARN)
+    if name == FENCE and not guarded:
+        draw_fence(canvas, view, fence, Tone.WARN)
 
 
-def beside(part: Primitive, altitude: float) -> bool:
-    """Say whether a part of an obstacle is at the vehicle's altitude, a margin of half a metre included."""
-    return abs(altitude - part.center[2]) <= half_height(part) + 0.5
+def beside(part: Primitive, depth: float, view: View) -> bool:
+    """Say whether a part of an obstacle reaches a depth, a margin of half a metre included."""
+    size = half_height(part) if view.plane is TOP else reach(part)
+    return abs(depth - part.center[view.plane.depth]) <= size + _BESIDE_M
 
 
-def levels(mission: Mission | None, altitude: float) -> tuple[bool, ...]:
-    """Return for each part of the obstacles whether it is at the vehicle's altitude: it decides how the map looks."""
-    return tuple(beside(part, altitude) for part in _parts(mission)) if mission else ()
+def levels(mission: Mission | None, depth: float, view: View) -> tuple[bool, ...]:
+    """Return for each part of the obstacles whether it is beside the vehicle: it decides how the map looks."""
+    return tuple(beside(part, depth, view) for part in _parts(mission)) if mission else ()
+
+
+def gates(mission: Mission | None) -> list[Gate]:
+    """Return the gates in their order."""
+    return [each for each in mission.obstacle if isinstance(each, Gate)] if mission else []
 
 
 def draw_legend(canvas: Canvas, view: View) -> None:
-    """Write the scale and where north is."""
+    """Write the scale and where north is, or from the side which way it looks."""
     room = canvas.columns // 4
     length = max((ruler for ruler in _RULERS if ruler / view.scale / 2 <= room), default=_RULERS[0])
     cells = max(round(length / view.scale / 2), 2)
     canvas.letters(1, canvas.rows - 1, f"├{'─' * (cells - 2)}┤ {length:g} m", Tone.MUTED)
-    canvas.letters(canvas.columns - 4, 0, "N ↑", Tone.MUTED)
+    words = "N ↑" if view.plane is TOP else ("E →", "N →")[view.plane.across]
+    canvas.letters(canvas.columns - 4, 0, words, Tone.MUTED)
 
 
 def label_obstacles(canvas: Canvas, view: View, mission: Mission | None) -> None:
-    """Write the obstacles' names under them."""
+    """Write the obstacles' names under them, and the gates' numbers before their names."""
+    numbers = {gate.name: f"{number} " for number, gate in enumerate(gates(mission), 1)}
     for obstacle in mission.obstacle if mission else ():
-        _label(canvas, view, obstacle, Tone.MUTED)
+        _label(canvas, view, f"{numbers.get(obstacle.name, '')}{obstacle.name}", obstacle, Tone.MUTED)
 
 
 def ring(canvas: Canvas, view: View, circle: tuple[float, float, float], tone: Tone, gap: int = 1) -> None:
-    """Draw a circle of (east, north, radius), m; of its dots only every so many, for a dotted one."""
-    east, north, radius = circle
+    """Draw a circle of (across, upward, radius), m; of its dots only every so many, for a dotted one."""
+    across, upward, radius = circle
     count = int(min(max(math.tau * radius / view.scale, 12), 2000))
     angles = np.arange(0, count, gap) * (math.tau / count)
-    canvas.plot(view.x(east + radius * np.cos(angles)), view.y(north + radius * np.sin(angles)), tone)
+    canvas.plot(view.x(across + radius * np.cos(angles)), view.y(upward + radius * np.sin(angles)), tone)
 
 
-def _label(canvas: Canvas, view: View, obstacle: Obstacle, tone: Tone) -> None:
-    (west, south, _), (east, _, _) = extent(obstacle)
-    column = int(view.x(0.5 * (west + east)) / 2) - len(obstacle.name) // 2
-    canvas.letters(column, int(view.y(south) / 4) + 1, obstacle.name, tone)
+def silhouette(part: Primitive, view: View) -> Floats:
+    """Return the outline of a part in the view's plane, m, closed, shape (n, 2)."""
+    across, upward = view.plane.flat(part.center)
+    if isinstance(part, Sphere) or (view.plane is TOP and not isinstance(part, Box)):
+        angles = np.linspace(0.0, math.tau, _SIDES + 1)
+        return np.stack([across + part.radius * np.cos(angles), upward + part.radius * np.sin(angles)], axis=1)
+    corners = np.array([(1, 1), (-1, 1), (-1, -1), (1, -1), (1, 1)], dtype=float)
+    if view.plane is not TOP:
+        lower, upper = extent(part)
+        wide = 0.5 * (upper[view.plane.across] - lower[view.plane.across])
+        return corners * (wide, half_height(part)) + (across, upward)
+    assert isinstance(part, Box)
+    yaw, (length, width, _) = math.radians(part.yaw_deg), part.size
+    c, s = math.cos(yaw), math.sin(yaw)
+    return (corners * (length / 2, width / 2)) @ np.array([(c, s), (-s, c)]) + (across, upward)
+
+
+def _label(canvas: Canvas, view: View, words: str, obstacle: Obstacle, tone: Tone) -> None:
+    lower, upper = (view.plane.flat(corner) for corner in extent(obstacle))
+    column = int(view.x(0.5 * (lower[0] + upper[0])) / 2) - len(words) // 2
+    row = int(view.y(lower[1]) / 4) + 1 if view.plane is TOP else int(view.y(upper[1]) / 4) - 1
+    canvas.letters(column, row, words, tone)
 
 
 def _parts(mission: Mission) -> list[Primitive]:
@@ -195,52 +171,66 @@ def _parts(mission: Mission) -> list[Primitive]:
 def _grid(canvas: Canvas, view: View) -> None:
     """Dots on whole steps of a ruler, far enough apart to stay faint."""
     step = next((ruler for ruler in _RULERS if ruler / view.scale >= 10), _RULERS[-1])
-    half_east, half_north = view.width * view.scale / 2, view.height * view.scale / 2
-    easts = np.arange(math.ceil((view.east - half_east) / step), (view.east + half_east) / step + 1) * step
-    norths = (
-        np.arange(math.ceil((view.north - half_north) / step), (view.north + half_north) / step + 1) * step
-    )
-    grid_east, grid_north = np.meshgrid(easts, norths)
-    canvas.plot(view.x(grid_east.ravel()), view.y(grid_north.ravel()), Tone.GRID)
+    half_right, half_up = view.width * view.scale / 2, view.height * view.scale / 2
+    rights = np.arange(math.ceil((view.across - half_right) / step), (view.across + half_right) / step + 1) * step
+    ups = np.arange(math.ceil((view.upward - half_up) / step), (view.upward + half_up) / step + 1) * step
+    grid_right, grid_up = np.meshgrid(rights, ups)
+    canvas.plot(view.x(grid_right.ravel()), view.y(grid_up.ravel()), Tone.GRID)
 
 
-def _hatch(canvas: Canvas, view: View, part: Primitive) -> None:
-    """Fill a part with dots."""
-    east, north, _ = part.center
-    steps = np.arange(-reach(part), reach(part) + view.scale, view.scale)
-    x, y = (axis.ravel() for axis in np.meshgrid(steps, steps))
-    inside = _inside(part, x, y)
-    columns, rows = np.rint(view.x(east + x[inside])), np.rint(view.y(north + y[inside]))
-    hatched = (columns + rows) % 2 == 0
-    canvas.plot(columns[hatched], rows[hatched], Tone.BESIDE)
+def _hatch(canvas: Canvas, view: View, outline: Floats) -> None:
+    """Fill a convex outline with dots."""
+    x, y = view.x(outline[:, 0]), view.y(outline[:, 1])
+    left, right = max(math.ceil(x.min()), 0), min(math.floor(x.max()), view.width - 1)
+    top, bottom = max(math.ceil(y.min()), 0), min(math.floor(y.max()), view.height - 1)
+    columns, rows = (axis.ravel() for axis in np.meshgrid(range(left, right + 1), range(top, bottom + 1)))
+    chosen = (columns + rows) % 2 == 0
+    columns, rows = columns[chosen], rows[chosen]
+    inside: NDArray[np.bool_] = np.ones(len(columns), dtype=bool)
+    for index in range(len(x) - 1):
+        # Counter-clockwise in the world is clockwise in dots, which count downward.
+        turn = (x[index + 1] - x[index]) * (rows - y[index]) - (y[index + 1] - y[index]) * (columns - x[index])
+        inside &= turn <= 1e-9
+    canvas.plot(columns[inside], rows[inside], Tone.BESIDE)
 
 
-def _outline(canvas: Canvas, view: View, part: Primitive, tone: Tone) -> None:
-    east, north, _ = part.center
-    if not isinstance(part, Box):
-        ring(canvas, view, (east, north, part.radius), tone)
+def _route(canvas: Canvas, view: View, mission: Mission) -> None:
+    """Draw the way the mission asks for, dotted, with a head on each leg that says which way it goes."""
+    if not mission.route:
         return
-    yaw, (length, width, _) = math.radians(part.yaw_deg), part.size
-    corners = np.array([(1, 1), (-1, 1), (-1, -1), (1, -1), (1, 1)]) * (length / 2, width / 2)
-    x = east + math.cos(yaw) * corners[:, 0] - math.sin(yaw) * corners[:, 1]
-    y = north + math.sin(yaw) * corners[:, 0] + math.cos(yaw) * corners[:, 1]
-    canvas.line(view.x(x), view.y(y), tone)
+    start = (0.0, 0.0, mission.takeoff_altitude_m)
+    way = np.array([start, *mission.route, *([mission.target.position] if mission.target else [])])
+    x, y = view.dots(way)
+    canvas.line(x, y, Tone.ROUTE, gap=4)
+    for index in range(len(x) - 1):
+        _head(canvas, (x[index], y[index]), (x[index + 1], y[index + 1]), 0.5, 3.0)
 
 
-def _inside(part: Primitive, x: Floats, y: Floats) -> NDArray[np.bool_]:
-    """Say which points, relative to its centre, are within a part's outline."""
-    if not isinstance(part, Box):
-        return x**2 + y**2 <= part.radius**2
-    yaw = math.radians(part.yaw_deg)
-    along = math.cos(yaw) * x + math.sin(yaw) * y
-    across = math.cos(yaw) * y - math.sin(yaw) * x
-    return (abs(along) <= part.size[0] / 2) & (abs(across) <= part.size[1] / 2)
+def _head(canvas: Canvas, start: tuple[float, float], end: tuple[float, float], share: float, size: float) -> None:
+    """Draw an arrow's head on a line, dots; none where the line is too short to have a direction."""
+    length = math.dist(start, end)
+    if not size * 2 < length < math.inf:
+        return
+    x, y = start[0] + share * (end[0] - start[0]), start[1] + share * (end[1] - start[1])
+    angle = math.atan2(end[1] - start[1], end[0] - start[0])
+    for side in (2.5, -2.5):
+        canvas.line([x, x + size * math.cos(angle + side)], [y, y + size * math.sin(angle + side)], Tone.ROUTE)
+
+
+def _way_through(canvas: Canvas, view: View, gate: Gate) -> None:
+    """Draw an arrow through a gate."""
+    yaw = math.radians(gate.yaw_deg)
+    ahead = np.array([math.cos(yaw), math.sin(yaw), 0.0])
+    x, y = view.dots(np.array(gate.center) + np.outer([-0.6, 0.6], ahead))
+    canvas.line(x, y, Tone.ROUTE)
+    _head(canvas, (x[0], y[0]), (x[1], y[1]), 1.0, 3.0)
 
 
 def _pad(canvas: Canvas, view: View, pad: Pad) -> None:
-    east, north, _ = pad.position
-    ring(canvas, view, (east, north, max(pad.radius, 3.0 * view.scale)), Tone.MUTED)
-    _cross(canvas, float(view.x(east)), float(view.y(north)), 1, Tone.MUTED)
+    across, upward = view.plane.flat(pad.position)
+    if view.plane is TOP:
+        ring(canvas, view, (across, upward, max(pad.radius, 3.0 * view.scale)), Tone.MUTED)
+    _cross(canvas, float(view.x(across)), float(view.y(upward)), 1, Tone.MUTED)
 
 
 def _cross(canvas: Canvas, x: float, y: float, arm: int, tone: Tone) -> None:

@@ -52,23 +52,24 @@ class Track:
     JUMP_M = 5.0
 
     def __init__(self, length: int = 4000) -> None:
-        self._ring = Ring(length, 2)
-        self._last: tuple[float, float] | None = None
+        self._ring = Ring(length, 4)
+        self._last: tuple[float, float, float] | None = None
 
-    def add(self, east: float, north: float) -> None:
-        """Add where the vehicle is, world, m."""
-        if not (math.isfinite(east) and math.isfinite(north)):
+    def add(self, east: float, north: float, up: float, t: float) -> None:
+        """Add where the vehicle is, world, m, at monotonic time `t`, s."""
+        place = (east, north, up)
+        if not all(map(math.isfinite, place)):
             return
-        step = math.dist(self._last, (east, north)) if self._last else math.inf
+        step = math.dist(self._last, place) if self._last else math.inf
         if step < self.SPACING_M:
             return
         if self._last and step > self.JUMP_M:
             self._ring.clear()
-        self._ring.add((east, north))
-        self._last = (east, north)
+        self._ring.add((*place, t))
+        self._last = place
 
     def points(self) -> Floats:
-        """Return east and north, m, oldest first, shape (n, 2)."""
+        """Return east, north, up, m, and time, s, oldest first, shape (n, 4)."""
         return self._ring.rows()
 
 

@@ -2,28 +2,32 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import ClassVar
 
 from textual import events
-from textual.app import ComposeResult
+from textual.app import ComposeResult, SystemCommand
 from textual.binding import Binding, BindingType
 from textual.containers import Horizontal, Vertical
 from textual.screen import Screen
+from textual.widget import Widget
 
 from groundstation.tui.acts import ACTS
 from groundstation.tui.choices import CHOICES
 from groundstation.tui.frame import Frame
 from groundstation.tui.hand import Hand
 from groundstation.tui.widgets.altitude import Altitude
+from groundstation.tui.widgets.attitude import Attitude
 from groundstation.tui.widgets.banner import Banner
 from groundstation.tui.widgets.curves import Curves
 from groundstation.tui.widgets.force import Force
 from groundstation.tui.widgets.happenings import Happenings
 from groundstation.tui.widgets.instrument import Instrument
 from groundstation.tui.widgets.keys import Keys
+from groundstation.tui.widgets.mission import Mission
 from groundstation.tui.widgets.numbers import FlightLine, Numbers
 from groundstation.tui.widgets.overview import Overview
+from groundstation.tui.widgets.pages import ALL, NAMES, Pages
 from groundstation.tui.widgets.status import StatusBar
 from groundstation.tui.widgets.stick import FORWARD, LEFT, UP, YAW, Stick
 from groundstation.tui.widgets.system import System
@@ -58,6 +62,12 @@ def _bindings() -> list[BindingType]:
         *choices,
         *steps,
         Binding("space,0", "centre", "Stick to the centre", show=False),
+        Binding("tab", "page(1)", "Next instrument", show=False, priority=True),
+        Binding("shift+tab", "page(-1)", "Instrument before", show=False, priority=True),
+        Binding("v,V", "view", "Next view", show=False),
+        Binding("g,G", "follow", "Follow, or whole mission", show=False),
+        Binding("plus,equals_sign", "zoom(1)", "Zoom in", show=False),
+        Binding("minus,underscore", "zoom(-1)", "Zoom out", show=False),
         Binding("question_mark,f1", "app.help", "Help", show=False),
         Binding("q,Q", "app.quit", "Quit", show=False),
     ]
@@ -79,6 +89,8 @@ class FlightScreen(Screen[None]):
         super().__init__()
         self._hand = hand
         self._stick = Stick(hand, id="stick")
+        self._map = Overview(id="map")
+        self._pages = Pages(self.show_page, id="pages")
         self._instruments: list[Instrument] = []
         self._latest: Frame | None = None
 
@@ -87,20 +99,25 @@ class FlightScreen(Screen[None]):
         yield StatusBar(id="status")
         yield FlightLine(id="line")
         yield Banner(id="banner")
+        yield self._pages
         with Horizontal(id="body"):
             with Vertical(id="where"):
                 with Horizontal(id="place"):
-                    yield Overview(id="map")
+                    yield self._map
                     yield Altitude(id="altitude")
-                yield Happenings(id="events")
+                with Horizontal(id="below"):
+                    yield Attitude(id="attitude")
+                    yield Happenings(id="events")
             with Vertical(id="hand"):
                 yield Numbers(id="numbers")
                 yield self._stick
                 yield Force(id="force")
-                yield Tracking(id="tracking")
+                yield Tracking(id="error")
                 yield Velocity(id="velocity")
                 yield System(id="system")
-            yield Curves(id="curves")
+            with Vertical(id="story"):
+                yield Mission(id="mission")
+                yield Curves(id="curves")
         yield Keys(id="keys")
 
     def on_mount(self) -> None:
@@ -111,7 +128,7 @@ class FlightScreen(Screen[None]):
         """Hand a frame to the instruments that are to be seen."""
         self._latest = frame
         for instrument in self._instruments:
-            if instrument.display:
+            if _seen(instrument):
                 instrument.show(frame)
 
     def action_step(self, axis: int, direction: int) -> None:
@@ -122,6 +139,47 @@ class FlightScreen(Screen[None]):
     def action_centre(self) -> None:
         """Put the on-screen stick into its centre."""
         self._stick.centre()
+
+    def action_page(self, steps: int) -> None:
+        """Give the body to the next instrument, or to all of them."""
+        self.show_page(self._pages.after(steps))
+
+    def show_page(self, name: str) -> None:
+        """Give the body to one instrument, or to all that there is room for."""
+        self._pages.page = name
+        self.set_class(name != ALL, "-solo")
+        for widget in self.query("#body *"):
+            widget.remove_class("-here")
+        if name != ALL:
+            for widget in self.query_one(f"#{name}").ancestors_with_self:
+                widget.set_class(isinstance(widget, Widget) and widget is not self, "-here")
+        # The map's altitude stays beside it.
+        self.query_one("#altitude").set_class(name == "map", "-here")
+        if self._latest is not None:
+            self.call_after_refresh(self.show, self._latest)
+
+    def commands(self) -> Iterator[SystemCommand]:
+        """List what this screen can do, for the palette."""
+        yield SystemCommand("Next view of the map (v)", "Above, side, chase, first person.", self.action_view)
+        yield SystemCommand("Follow or whole (g)", "The map follows the vehicle.", self.action_follow)
+        yield SystemCommand("Zoom in (+)", "Nearer.", lambda: self.action_zoom(1))
+        yield SystemCommand("Zoom out (-)", "Further away.", lambda: self.action_zoom(-1))
+        for name in NAMES:
+            title = f"Show {name} (tab)"
+            words = "As many instruments as there is room for." if name == ALL else "With all the room there is."
+            yield SystemCommand(title, words, lambda name=name: self.show_page(name))
+
+    def action_view(self) -> None:
+        """See the flight from the next place."""
+        self._map.next_sight()
+
+    def action_follow(self) -> None:
+        """Follow the vehicle with the map, or show the whole mission."""
+        self._map.follow_or_whole()
+
+    def action_zoom(self, steps: int) -> None:
+        """Go nearer, or further away."""
+        self._map.zoom(steps)
 
     def let_go(self) -> None:
         """Let go of the on-screen stick, so that it moves the vehicle no more."""
@@ -137,6 +195,11 @@ class FlightScreen(Screen[None]):
         if reason:
             self.notify(reason, timeout=3.0)
             event.stop()
+
+
+def _seen(instrument: Instrument) -> bool:
+    """Say whether an instrument has a place on the screen now."""
+    return all(widget.display for widget in instrument.ancestors_with_self if isinstance(widget, Widget))
 
 
 def reason_for(key: str, hindrances: Mapping[str, str]) -> str:

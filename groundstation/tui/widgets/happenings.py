@@ -5,7 +5,7 @@ from __future__ import annotations
 from groundstation.messages import Severity
 from groundstation.tui.frame import Frame
 from groundstation.tui.notes import Note, merged
-from groundstation.tui.rows import Row, clock
+from groundstation.tui.rows import Row, clock, wrapped
 from groundstation.tui.theme import MARKS, TONES, Tone
 from groundstation.tui.widgets.instrument import Instrument
 
@@ -36,7 +36,7 @@ def _lines(note: Note, t: float, width: int) -> list[Row]:
     source = f"{note.source:<9}" if width >= _WITH_SOURCE else ""
     head = f" {clock(t)} "
     room = max(width - len(head) - 4 - len(source), 10)
-    pieces = _wrapped(note.text, room)
+    pieces = wrapped(note.text, room)
     first: Row = [
         (head, Tone.MUTED),
         (f"{MARKS[note.severity]} ", TONES[note.severity]),
@@ -46,13 +46,3 @@ def _lines(note: Note, t: float, width: int) -> list[Row]:
     indent = " " * (len(head) + 2 + len(source))
     rows.extend([(indent, Tone.TEXT), (piece, tone)] for piece in pieces[1:])
     return rows
-
-
-def _wrapped(text: str, width: int) -> list[str]:
-    """Break a sentence between words; textwrap is several times slower, and this runs in every frame."""
-    lines = [""]
-    for word in text.split():
-        if lines[-1] and len(lines[-1]) + 1 + len(word) > width:
-            lines.append("")
-        lines[-1] = f"{lines[-1]} {word}" if lines[-1] else word
-    return lines

@@ -14,7 +14,7 @@ from textual.widget import Widget
 
 from groundstation.tui.frame import Frame
 from groundstation.tui.rows import Row, fit, span_of_time
-from groundstation.tui.theme import STYLES, Tone
+from groundstation.tui.theme import Tone, styles_of
 
 _STALE_CLASS = "-stale"
 
@@ -96,8 +96,8 @@ class Instrument(Widget, can_focus=False):
     def _make_styles(self) -> dict[Tone, Style]:
         """Return the styles on this widget's ground, all of them the stale one where its data is old."""
         ground = Style(bgcolor=self.background_colors[1].rich_color)
-        old = self.has_class(_STALE_CLASS)
-        self._styles = {tone: ground + STYLES[Tone.STALE if old else tone] for tone in Tone}
+        old, styles = self.has_class(_STALE_CLASS), styles_of(self.app.theme)
+        self._styles = {tone: ground + styles[Tone.STALE if old else tone] for tone in Tone}
         return self._styles
 
     def notify_style_update(self) -> None:

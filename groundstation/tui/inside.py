@@ -1,0 +1,206 @@
+"""The world from within, as a wireframe: from behind the vehicle, or as the vehicle itself sees it."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from groundstation.messages import Phase, PilotState
+from groundstation.training.mission import Fence, Mission
+from groundstation.tui import wireframe
+from groundstation.tui.camera import Camera, Solids
+from groundstation.tui.canvas import Canvas
+from groundstation.tui.frame import Frame
+from groundstation.tui.moving import FADED_S, FRESH_S, echoes
+from groundstation.tui.perspective import Lines, draw, visible
+from groundstation.tui.rows import columns_of
+from groundstation.tui.scene import gates
+from groundstation.tui.tape import heading_tape
+from groundstation.tui.theme import Tone
+from groundstation.tui.wireframe import Floats
+
+# How far behind the vehicle and above it the chasing camera is at zoom 1, m, and how far down it looks, rad.
+_BEHIND_M, _ABOVE_M, _DOWN = 3.0, 1.5, -0.34
+# What is seen across the picture at zoom 1, rad.
+_ANGLE = math.radians(80.0)
+_GROUND_M, _DIM_M, _GRID_DIM_M, _HORIZON_M = 20.0, 12.0, 7.0, 2000.0
+_FENCE_POSTS = 16
+_SLOW = 0.3
+_TAPE_FROM = 30
+
+
+def camera(frame: Frame, columns: int, rows: int, zoom: float, *, chase: bool) -> Camera | None:
+    """Return the camera of a frame, or None where it is not known where the vehicle is.
+
+    Args:
+        frame: Of which the picture is.
+        columns, rows: Of the picture, cells.
+        zoom: Nearer where above 1.
+        chase: From behind the vehicle, not from it.
+    """
+    vehicle = frame.snapshot.vehicle
+    if vehicle is None or not all(map(math.isfinite, vehicle.position)):
+        return None
+    east, north, up, yaw = vehicle.position
+    width, height = 2 * columns, 4 * rows
+    focal = max(0.5 * width / math.tan(_ANGLE / 2), 0.5 * height)
+    if not chase:
+        pitch, roll = (angle if math.isfinite(angle) else 0.0 for angle in (vehicle.pitch, vehicle.roll))
+        return Camera((east, north, up), yaw, -pitch, roll, focal * zoom, width, height)
+    back = _BEHIND_M / zoom
+    place = (east - back * math.cos(yaw), north - back * math.sin(yaw), max(up + _ABOVE_M / zoom, 0.2))
+    return Camera(place, yaw, _DOWN, 0.0, focal, width, height)
+
+
+def draw_inside(canvas: Canvas, frame: Frame, eye: Camera, solids: Solids, fence: Fence, *, chase: bool) -> None:
+    """Draw the world as a camera sees it, with the vehicle in it where the camera is not the vehicle.
+
+    Args:
+        canvas: Drawn on.
+        frame: What there is.
+        eye: Sees it.
+        solids: The mission's obstacles.
+        fence: Where the hand may take the vehicle.
+        chase: The vehicle is seen.
+    """
+    mission, pilot = frame.run.mission, frame.pilot
+    if pilot is not None and pilot.phase != Phase.ENGAGED:
+        pilot = None
+    scene = [*_standing(frame, eye, mission, fence), *_flown(frame, chase=chase)]
+    if pilot is not None:
+        scene += _led(frame, pilot, chase=chase)
+    if chase:
+        scene += _vehicle(frame)
+    draw(canvas, eye, solids, scene)
+    _labels(canvas, frame, eye, solids)
+    if not chase:
+        _sights(canvas, frame, eye)
+    if canvas.columns >= _TAPE_FROM:
+        for column, (text, tone) in columns_of(heading_tape(eye.yaw, canvas.columns)):
+            canvas.letters(column, 0, text, tone)
+
+
+def _standing(frame: Frame, eye: Camera, mission: Mission | None, fence: Fence) -> list[Lines]:
+    """Return ground, horizon, fence, obstacles, gates, route and target."""
+    place = eye.place
+    angles = np.linspace(0.0, math.tau, 73)
+    skyline = np.stack([np.cos(angles), np.sin(angles), np.zeros(73)], axis=1) * _HORIZON_M + np.array(place)
+    scene = [
+        Lines(wireframe.ground(place, _GROUND_M), Tone.GRID, 2, far=_GRID_DIM_M),
+        Lines(wireframe.path(skyline), Tone.FAINT),
+    ]
+    if fence.radius > 0.0:
+        scene.append(Lines(_fence(fence, max(place[2], 2.0)), Tone.OBSTACLE, 2))
+    if mission is None:
+        return scene
+    for obstacle in mission.obstacle:
+        guarded = bool(frame.guarded_by) and obstacle.name == frame.guarded_by
+        tone = Tone.WARN if guarded else Tone.BESIDE
+        scene.append(Lines(wireframe.contours(obstacle, place), tone, far=_DIM_M))
+    way = [(0.0, 0.0, mission.takeoff_altitude_m), *mission.route]
+    if mission.target is not None:
+        target = np.array(mission.target.position)
+        way.append(mission.target.position)
+        ring = wireframe.level_circle(target, max(mission.target.radius, 0.2))
+        foot = np.array([target, target * (1.0, 1.0, 0.0)])
+        scene.append(Lines(np.concatenate([ring, wireframe.diamond(target, 0.15)]), Tone.TARGET, through=True))
+        scene.append(Lines(wireframe.path(foot), Tone.ROUTE, 4))
+    if mission.route:
+        scene.insert(2, Lines(wireframe.path(np.array(way)), Tone.ROUTE, 5))
+    return scene
+
+
+def _fence(fence: Fence, seen_up: float) -> Floats:
+    """Return rings at the fence's floor and ceiling, and posts between them."""
+    top = fence.ceiling or 2.0 * seen_up
+    rings = [wireframe.level_circle(np.array([0.0, 0.0, level]), fence.radius) for level in (0.0, top)]
+    feet = rings[0][:_FENCE_POSTS, 0]
+    return np.concatenate([*rings, np.stack([feet, feet + np.array([0.0, 0.0, top])], axis=1)])
+
+
+def _flown(frame: Frame, *, chase: bool) -> list[Lines]:
+    """Return the way flown, the older the dimmer; as the vehicle sees it, all of it lies behind."""
+    points = frame.track.points()
+    if not chase or len(points) < 2:
+        return []
+    segments, age = wireframe.path(points[:, :3]), frame.now - points[1:, 3]
+    bounds = ((0.0, FRESH_S, Tone.VEHICLE, 1), (FRESH_S, FADED_S, Tone.TRAIL, 2), (FADED_S, np.inf, Tone.FADED, 3))
+    return [
+        Lines(segments[(age >= young) & (age < old)], tone, gap) for young, old, tone, gap in reversed(bounds)
+    ]
+
+
+def _led(frame: Frame, pilot: PilotState, *, chase: bool) -> list[Lines]:
+    """Return p_h with the line to it, the leash, and where the vehicle can stop."""
+    assert frame.snapshot.vehicle is not None
+    place, wanted, stop = (
+        np.array(tuple(point)[:3]) for point in (frame.snapshot.vehicle.position, pilot.p_h, pilot.stop)
+    )
+    if not np.isfinite([place, wanted, stop]).all():
+        return []
+    tone = Tone.WARN if pilot.on_leash else Tone.HAND
+    scene = [Lines(wireframe.diamond(wanted, 0.12), tone, through=True)]
+    if chase:
+        leash = wireframe.level_circle(place, frame.run.settings.mapping.leash)
+        scene += [Lines(wireframe.path(np.array([place, wanted])), tone, 2), Lines(leash, Tone.FAINT, 3)]
+        cross = np.array([[[0.15, 0.15, 0], [-0.15, -0.15, 0]], [[0.15, -0.15, 0], [-0.15, 0.15, 0]]])
+        scene += [
+            Lines(cross + stop, Tone.VEHICLE),
+            Lines(wireframe.path(np.array([place, stop])), Tone.TRAIL, 2),
+        ]
+    return scene
+
+
+def _vehicle(frame: Frame) -> list[Lines]:
+    """Return the vehicle, its shadow, and what its own sensors see."""
+    state = frame.snapshot.vehicle
+    assert state is not None
+    east, north, up, yaw = state.position
+    place = np.array([east, north, up])
+    pitch, roll = (angle if math.isfinite(angle) else 0.0 for angle in (state.pitch, state.roll))
+    shadow = wireframe.level_circle(np.array([east, north, 0.0]), 0.35)
+    drop = wireframe.path(np.array([place, place * (1.0, 1.0, 0.0)]))
+    scene = [
+        Lines(np.concatenate([shadow, drop]), Tone.FAINT, 3),
+        Lines(wireframe.vehicle(place, yaw, pitch, roll), Tone.VEHICLE),
+    ]
+    ranges = frame.snapshot.ranges
+    if ranges is not None and frame.age(ranges) <= 0.5:
+        marks = echoes((east, north, up, yaw), tuple(ranges.ring))
+        marks = marks[np.isfinite(marks).all(axis=1)]
+        scene.append(Lines(np.stack([marks, marks + (0.0, 0.0, 0.15)], axis=1), Tone.TEXT))
+    return scene
+
+
+def _labels(canvas: Canvas, frame: Frame, eye: Camera, solids: Solids) -> None:
+    """Write names over what is seen: the target with how far it is, the gates with their numbers."""
+    mission, vehicle = frame.run.mission, frame.snapshot.vehicle
+    if mission is None or vehicle is None:
+        return
+    here = tuple(vehicle.position)[:3]
+    words: list[tuple[tuple[float, float, float], str, Tone]] = []
+    if mission.target is not None:
+        x, y, z = mission.target.position
+        words.append(((x, y, z + 0.4), f"target {math.dist(here, (x, y, z)):.1f} m", Tone.TARGET))
+    for number, gate in enumerate(gates(mission), 1):
+        x, y, z = gate.center
+        words.append(((x, y, z + gate.height / 2 + 0.3), f"gate {number}", Tone.TEXT))
+    for place, text, tone in words:
+        if seen := visible(eye, solids, np.array(place)):
+            canvas.letters(int(seen[0] / 2) - len(text) // 2, int(seen[1] / 4), text, tone)
+
+
+def _sights(canvas: Canvas, frame: Frame, eye: Camera) -> None:
+    """Mark straight ahead, and where it flies to."""
+    x, y = (canvas.width - 1) / 2, (canvas.height - 1) / 2
+    for side in (1, -1):
+        canvas.line([x + 4 * side, x + 12 * side], [y, y], Tone.VEHICLE)
+    canvas.line([x, x], [y + 4, y + 8], Tone.VEHICLE)
+    assert frame.snapshot.vehicle is not None
+    velocity = np.array(tuple(frame.snapshot.vehicle.velocity)[:3])
+    if not np.linalg.norm(velocity) > _SLOW:
+        return
+    ahead_x, ahead_y = eye.dots(np.array(eye.place) + 10.0 * velocity / np.linalg.norm(velocity))
+    angles = np.linspace(0.0, math.tau, 20)
+    canvas.plot(ahead_x + 4 * np.cos(angles), ahead_y + 4 * np.sin(angles), Tone.OK)

@@ -1,0 +1,88 @@
+"""The artificial horizon, with the heading above and the angles in figures below."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from groundstation.tui.canvas import Canvas
+from groundstation.tui.frame import Frame
+from groundstation.tui.rows import Row, quantity, spread
+from groundstation.tui.tape import heading_tape
+from groundstation.tui.theme import Tone
+from groundstation.tui.widgets.instrument import Instrument
+
+# Dots a degree of pitch, and the steps of the ladder, degrees.
+_DOTS_A_DEGREE = 1.1
+_LADDER = (-20, -10, 10, 20)
+_RUNG, _WINGS, _GAP = 9, 12, 4
+
+
+class Attitude(Instrument):
+    """Roll and pitch against the horizon; earth is hatched, sky is empty."""
+
+    BORDER_TITLE = "attitude"
+    EVERY = 2
+    STALE_S = 0.5
+
+    def data_age(self, frame: Frame) -> float:
+        """Age of the vehicle's state."""
+        return frame.age(frame.snapshot.vehicle)
+
+    def draw(self, frame: Frame, width: int, height: int) -> list[Row]:
+        """Draw tape, horizon and figures."""
+        vehicle = frame.snapshot.vehicle
+        nan = math.nan
+        # Up is a positive pitch for a pilot; the vehicle's own axes have it turn the nose down.
+        yaw, roll, pitch = (
+            (vehicle.position[3], vehicle.roll, -vehicle.pitch) if vehicle else (nan, nan, nan)
+        )
+        turn = vehicle.velocity[3] if vehicle else nan
+        canvas = Canvas(width, max(height - 2, 1))
+        draw_horizon(canvas, roll, pitch)
+        left: Row = [
+            (" roll ", Tone.MUTED), (quantity(math.degrees(roll), "°", 1, 5, sign=True), Tone.STRONG),
+            ("  pitch ", Tone.MUTED), (quantity(math.degrees(pitch), "°", 1, 5, sign=True), Tone.STRONG),
+        ]  # fmt: skip
+        right: Row = [
+            ("turn ", Tone.MUTED),
+            (f"{quantity(math.degrees(turn), '°/s', 0, 4, sign=True)} ", Tone.STRONG),
+        ]
+        return [heading_tape(yaw, width), *canvas.to_rows(), spread(left, right, width)][:height]
+
+
+def draw_horizon(canvas: Canvas, roll: float, pitch: float) -> None:
+    """Draw the horizon as it is seen from the vehicle.
+
+    Args:
+        canvas: Drawn on, all of it.
+        roll: To the right, rad.
+        pitch: Upward, rad.
+    """
+    x, y = (canvas.width - 1) / 2, (canvas.height - 1) / 2
+    if math.isfinite(roll) and math.isfinite(pitch):
+        c, s = math.cos(roll), math.sin(roll)
+        # On the picture the horizon turns against the vehicle: right is (c, −s), up (−s, −c).
+        down = math.degrees(math.remainder(pitch, math.tau)) * _DOTS_A_DEGREE
+        columns, rows = np.meshgrid(np.arange(canvas.width), np.arange(canvas.height))
+        below = (columns - x) * s + (rows - y) * c - down
+        earth = (below > 1.0) & ((columns + 2 * rows) % 4 == 0)
+        canvas.plot(columns[earth], rows[earth], Tone.EARTH)
+        reach = canvas.width + canvas.height
+        middle = (x + s * down, y + c * down)
+        _stroke(canvas, middle, (c, -s), (-reach, reach), Tone.STRONG)
+        for step in _LADDER:
+            at = down - step * _DOTS_A_DEGREE
+            _stroke(canvas, (x + s * at, y + c * at), (c, -s), (-_RUNG, _RUNG), Tone.MUTED)
+    for side in (-1, 1):
+        canvas.line([x + side * _GAP, x + side * (_GAP + _WINGS)], [y, y], Tone.VEHICLE)
+        canvas.line([x + side * _GAP, x + side * _GAP], [y, y + 3], Tone.VEHICLE)
+    canvas.plot([x, x, x - 1, x + 1], [y, y + 1, y, y], Tone.VEHICLE)
+
+
+def _stroke(
+    canvas: Canvas, at: tuple[float, float], way: tuple[float, float], ends: tuple[int, int], tone: Tone
+) -> None:
+    """Draw a line through a point: from one end to the other along a direction, dots."""
+    canvas.line([at[0] + end * way[0] for end in ends], [at[1] + end * way[1] for end in ends], tone)

@@ -1,0 +1,88 @@
+"""How the mission is going: what it asks for, how far it is, its clock, and the score so far with its parts."""
+
+from __future__ import annotations
+
+import math
+
+from groundstation.training.mission import Mission as MissionFile
+from groundstation.training.score import score_of
+from groundstation.tui.frame import Frame
+from groundstation.tui.notes import words
+from groundstation.tui.rows import UNKNOWN, Row, clock, gauge, quantity, width_of
+from groundstation.tui.theme import Tone
+from groundstation.tui.widgets.instrument import Instrument
+
+_LABEL = 11
+# What is only known once the target has been held.
+_AT_THE_END = frozenset({"precision", "time"})
+
+
+class Mission(Instrument):
+    """A row a thing, the most important first."""
+
+    BORDER_TITLE = "mission"
+    EVERY = 10
+    STALE_S = 2.0
+
+    def data_age(self, frame: Frame) -> float:
+        """Age of the progress; without a mission there is none to be old."""
+        return 0.0 if frame.run.mission is None else frame.age(frame.snapshot.progress)
+
+    def draw(self, frame: Frame, width: int, height: int) -> list[Row]:
+        """Draw as many rows as there is room for."""
+        mission = frame.run.mission
+        if mission is None:
+            return [[(" free flight: nothing is asked for", Tone.MUTED)]]
+        rows = [_row("mission", (mission.title[: max(width - _LABEL - 2, 0)], Tone.TEXT))]
+        rows += _progress(frame, mission, width)
+        return [*rows, *_score(frame, mission, width)][:height]
+
+
+def _row(label: str, *parts: tuple[str, Tone]) -> Row:
+    return [(f" {label:<{_LABEL - 1}}", Tone.MUTED), *parts]
+
+
+def _progress(frame: Frame, mission: MissionFile, width: int) -> list[Row]:
+    progress, figures = frame.snapshot.progress, frame.figures
+    if progress is None:
+        return [_row("stage", (UNKNOWN, Tone.MUTED))]
+    stage = words(progress.stage)
+    rows: list[Row] = []
+    if progress.legs:
+        done = min(progress.leg, progress.legs)
+        figure = f" {done} of {progress.legs} points"
+        head = _row("way")
+        strip = gauge(done, progress.legs, width - width_of(head) - len(figure) - 1, Tone.TARGET)
+        rows.append([*head, *((text, Tone.TARGET if tone is Tone.WARN else tone) for text, tone in strip), (figure, Tone.TEXT)])
+    target = f", target {quantity(progress.target_distance, 'm', 1)} away" if math.isfinite(progress.target_distance) else ""
+    rows.insert(0, _row("stage", (f"{stage}{target}", Tone.STRONG)))
+    if figures is not None:
+        limit = mission.criteria.time_limit_s
+        late = figures.duration > limit
+        tone = Tone.WARN if late else Tone.STRONG
+        rows.append(
+            _row("clock", (f"{'▲ ' if late else ''}{clock(figures.duration)}", tone), (f" of {clock(limit)} min", Tone.MUTED))
+        )
+    touched = (f"▲ {progress.collisions} collisions", Tone.WARN) if progress.collisions else ("no collision", Tone.TEXT)
+    gates = [(f", {figures.gates - figures.gates_missed} of {figures.gates} gates", Tone.TEXT)] if figures and figures.gates else []
+    near = (f", {quantity(progress.clearance, 'm', 1)} clear", Tone.TEXT)
+    return [*rows, _row("obstacles", touched, *([near] if math.isfinite(progress.clearance) else []), *gates)]
+
+
+def _score(frame: Frame, mission: MissionFile, width: int) -> list[Row]:
+    """Return the score so far, and how much of each of its parts is reached."""
+    figures = frame.figures
+    score = score_of(mission, figures) if figures is not None else None
+    if score is None or figures is None:
+        return []
+    held = not math.isnan(figures.final_error)
+    rows = [_row("score", (f"{score.points:.0f}", Tone.STRONG), (" of 100 points so far", Tone.MUTED))]
+    for part in score.parts:
+        head: Row = [(f"   {part.name:<{_LABEL - 2}}", Tone.MUTED)]
+        if part.name in _AT_THE_END and not held:
+            rows.append([*head, ("comes when the target is held", Tone.FAINT)])
+            continue
+        figure = f" {100.0 * part.share:3.0f} %"
+        strip = gauge(part.share, 1.0, width - width_of(head) - len(figure) - 1, Tone.OK)
+        rows.append([*head, *((text, Tone.OK if tone is Tone.WARN else tone) for text, tone in strip), (figure, Tone.STRONG)])
+    return rows

@@ -21,6 +21,7 @@ BENCHES = {
     "falcon": "the Falcon's driver: exactness, spoilt bytes, cost of a tick",
     "servo": "pace of the servo on an emulated device, against a bare C loop",
     "passivity": "energy at the haptic port with delay and loss",
+    "screen": "what the screen costs while it flies, and what its freezing changes in flight",
     "pilot_step": "cost and memory of a tick of the pilot with everything on",
     "stability": "how well the drone follows, and whether anything swings at 0.7 s round trip",
     "evaluate": "how many times as fast as real time flights are evaluated",

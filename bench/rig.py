@@ -126,6 +126,10 @@ class Program:
         arguments: Its command line.
         columns, rows: Size of the terminal.
         under: Command that starts it, as `setpriv` does with fewer rights.
+
+    Attributes:
+        screen: The newest of what it wrote to the terminal.
+        written: How much it wrote, bytes.
     """
 
     def __init__(
@@ -144,6 +148,7 @@ class Program:
         self._closed = False
         self._reader = threading.Thread(target=self._drain, daemon=True)
         self.screen = bytearray()
+        self.written = 0
         self._reader.start()
         self.bus = self._join()
         self.console = Console(self.bus, "bench")
@@ -227,7 +232,9 @@ class Program:
             if not select.select([self._controller], [], [], 0.1)[0]:
                 continue
             try:
-                self.screen += os.read(self._controller, 65536)
+                news = os.read(self._controller, 65536)
+                self.written += len(news)
+                self.screen += news
             except OSError:
                 # Nobody has the terminal open now; somebody may again.
                 time.sleep(0.02)

@@ -114,7 +114,8 @@ class FlightApp(App[int]):
         snapshot = self._snapshot = self._reader.snapshot()
         if self._follower is not None:
             self._follower.look(snapshot)
-        if snapshot.t >= self._next_poll:
+        polled = snapshot.t >= self._next_poll
+        if polled:
             self._next_poll = snapshot.t + _POLL_S
             self._supervisor.poll()
         for note in self._answers.take(snapshot):
@@ -126,9 +127,10 @@ class FlightApp(App[int]):
             self._track.add(east, north, up, snapshot.vehicle.t)
         self._history.add(snapshot, stale_s)
         frame = self._frame(snapshot)
-        self._alarms.look(conditions(frame), snapshot.t)
-        if self._alarms.ring(snapshot.t):
-            self.bell()
+        if polled:
+            self._alarms.look(conditions(frame), snapshot.t)
+            if self._alarms.ring(snapshot.t):
+                self.bell()
         if self._pace.due(self._clock()):
             self._flight.show(frame)
 

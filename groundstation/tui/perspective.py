@@ -8,11 +8,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from groundstation.tui.camera import Camera, Solids, before
-from groundstation.tui.canvas import Canvas, dots_of
+from groundstation.tui.canvas import Canvas, Dots, dots_of
 from groundstation.tui.theme import Tone
 
 Floats = NDArray[np.float64]
 
+# Whether a dot is hidden is asked for one in so many.
+_ASKED = 3
 # Of lines that are seen through bodies, one dot in so many shows there.
 _THROUGH = 4
 
@@ -59,7 +61,7 @@ def draw(canvas: Canvas, camera: Camera, solids: Solids, scene: list[Lines]) -> 
     segments, gaps, tones, through = segments[seen], gaps[seen], tones[seen], through[seen]
     x, y = camera.picture(segments)
     dots = dots_of(x[:, 0], y[:, 0], x[:, 1], y[:, 1], canvas.width, canvas.height, gaps)
-    hidden = solids.hide(camera.place, _places(camera, segments, dots.x, dots.y, dots.share, dots.line))
+    hidden = _hidden(camera, solids, segments, dots)
     sparse = through[dots.line] & (np.arange(len(hidden)) % _THROUGH == 0)
     shown = ~hidden | sparse
     canvas.plot(dots.x[shown], dots.y[shown], tones[dots.line[shown]])
@@ -72,6 +74,13 @@ def visible(camera: Camera, solids: Solids, point: Floats) -> tuple[float, float
     if not inside or solids.hide(camera.place, point[None])[0]:
         return None
     return float(x), float(y)
+
+
+def _hidden(camera: Camera, solids: Solids, segments: Floats, dots: Dots) -> NDArray[np.bool_]:
+    """Say which dots are behind a body; of neighbours only one is asked about, the others are as it is."""
+    x, y, share, line = (each[::_ASKED] for each in dots)
+    hidden = solids.hide(camera.place, _places(camera, segments, x, y, share, line))
+    return np.repeat(hidden, _ASKED)[: len(dots.x)]
 
 
 def _places(

@@ -76,8 +76,8 @@ def draw_horizon(canvas: Canvas, roll: float, pitch: float) -> None:
             at = down - step * _DOTS_A_DEGREE
             _stroke(canvas, (x + s * at, y + c * at), (c, -s), (-_RUNG, _RUNG), Tone.MUTED)
     for side in (-1, 1):
-        canvas.line([x + side * _GAP, x + side * (_GAP + _WINGS)], [y, y], Tone.VEHICLE)
-        canvas.line([x + side * _GAP, x + side * _GAP], [y, y + 3], Tone.VEHICLE)
+        near, far = x + side * _GAP, x + side * (_GAP + _WINGS)
+        canvas.line([far, near, near], [y, y, y + 3], Tone.VEHICLE)
     canvas.plot([x, x, x - 1, x + 1], [y, y + 1, y, y], Tone.VEHICLE)
 
 

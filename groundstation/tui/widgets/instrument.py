@@ -65,14 +65,14 @@ class Instrument(Widget, can_focus=False):
         self._note(frame)
         rows = self.draw(frame, width, height)
         rows.extend([] for _ in range(height - len(rows)))
-        if len(rows) != len(self._rows):
+        if not len(rows) == len(self._rows) == height:
             self._rows = rows
             self.refresh()
             return
-        changed = [Region(0, y, width, 1) for y in range(len(rows)) if rows[y] != self._rows[y]]
+        changed = [y for y in range(height) if rows[y] != self._rows[y]]
         self._rows = rows
         if changed:
-            self.refresh(*changed)
+            self.refresh(*_bands(changed, width))
 
     def _note(self, frame: Frame) -> None:
         """Write into the lower border how old the data is, or the footnote."""
@@ -110,3 +110,14 @@ class Instrument(Widget, can_focus=False):
         self._rows = []
         if self._frame is not None:
             self.show(self._frame)
+
+
+def _bands(lines: list[int], width: int) -> list[Region]:
+    """Return the regions of lines in ascending order; neighbours are one, which is cheaper to compose."""
+    bands: list[Region] = []
+    for y in lines:
+        if bands and bands[-1].bottom == y:
+            bands[-1] = Region(0, bands[-1].y, width, y + 1 - bands[-1].y)
+        else:
+            bands.append(Region(0, y, width, 1))
+    return bands

@@ -103,7 +103,9 @@ class Canvas:
         for row, column, bit in _BITS:
             bits |= self._dots[row::4, column::2] << bit
         written = self._letters != 0
-        codes = np.where(written, self._letters, np.where(bits == 0, _SPACE, _BRAILLE + bits.astype(np.uint32)))
+        codes = np.where(
+            written, self._letters, np.where(bits == 0, _SPACE, _BRAILLE + bits.astype(np.uint32))
+        )
         tones = np.where(codes == _SPACE, 0, np.where(written, self._letter_tones, self._tones))
         return _runs(codes, tones)
 

@@ -19,13 +19,17 @@ from groundstation.tui.scene import gates
 from groundstation.tui.tape import heading_tape
 from groundstation.tui.theme import Tone
 from groundstation.tui.wireframe import Floats
+from sim.environment.shapes import extent
+from sim.scenario import Gate
 
 # How far behind the vehicle and above it the chasing camera is at zoom 1, m, and how far down it looks, rad.
 _BEHIND_M, _ABOVE_M, _DOWN = 3.0, 1.5, -0.34
 # What is seen across the picture at zoom 1, rad.
 _ANGLE = math.radians(80.0)
-_GROUND_M, _DIM_M, _GRID_DIM_M, _HORIZON_M = 20.0, 12.0, 7.0, 2000.0
+_GROUND_M, _DIM_M, _GRID_DIM_M, _HORIZON_M = 14.0, 12.0, 5.0, 2000.0
 _FENCE_POSTS = 16
+# This far around a vehicle nothing behind it is drawn, m.
+_FREE_M = 0.55
 _SLOW = 0.3
 _TAPE_FROM = 30
 
@@ -53,7 +57,9 @@ def camera(frame: Frame, columns: int, rows: int, zoom: float, *, chase: bool) -
     return Camera(place, yaw, _DOWN, 0.0, focal, width, height)
 
 
-def draw_inside(canvas: Canvas, frame: Frame, eye: Camera, solids: Solids, fence: Fence, *, chase: bool) -> None:
+def draw_inside(
+    canvas: Canvas, frame: Frame, eye: Camera, solids: Solids, fence: Fence, *, chase: bool
+) -> None:
     """Draw the world as a camera sees it, with the vehicle in it where the camera is not the vehicle.
 
     Args:
@@ -70,9 +76,9 @@ def draw_inside(canvas: Canvas, frame: Frame, eye: Camera, solids: Solids, fence
     scene = [*_standing(frame, eye, mission, fence), *_flown(frame, chase=chase)]
     if pilot is not None:
         scene += _led(frame, pilot, chase=chase)
-    if chase:
-        scene += _vehicle(frame)
     draw(canvas, eye, solids, scene)
+    if chase:
+        _draw_vehicle(canvas, frame, eye, solids)
     _labels(canvas, frame, eye, solids)
     if not chase:
         _sights(canvas, frame, eye)
@@ -88,7 +94,7 @@ def _standing(frame: Frame, eye: Camera, mission: Mission | None, fence: Fence) 
     skyline = np.stack([np.cos(angles), np.sin(angles), np.zeros(73)], axis=1) * _HORIZON_M + np.array(place)
     scene = [
         Lines(wireframe.ground(place, _GROUND_M), Tone.GRID, 2, far=_GRID_DIM_M),
-        Lines(wireframe.path(skyline), Tone.FAINT),
+        Lines(wireframe.path(skyline), Tone.MUTED),
     ]
     if fence.radius > 0.0:
         scene.append(Lines(_fence(fence, max(place[2], 2.0)), Tone.OBSTACLE, 2))
@@ -104,7 +110,9 @@ def _standing(frame: Frame, eye: Camera, mission: Mission | None, fence: Fence) 
         way.append(mission.target.position)
         ring = wireframe.level_circle(target, max(mission.target.radius, 0.2))
         foot = np.array([target, target * (1.0, 1.0, 0.0)])
-        scene.append(Lines(np.concatenate([ring, wireframe.diamond(target, 0.15)]), Tone.TARGET, through=True))
+        scene.append(
+            Lines(np.concatenate([ring, wireframe.diamond(target, 0.15)]), Tone.TARGET, through=True)
+        )
         scene.append(Lines(wireframe.path(foot), Tone.ROUTE, 4))
     if mission.route:
         scene.insert(2, Lines(wireframe.path(np.array(way)), Tone.ROUTE, 5))
@@ -125,7 +133,11 @@ def _flown(frame: Frame, *, chase: bool) -> list[Lines]:
     if not chase or len(points) < 2:
         return []
     segments, age = wireframe.path(points[:, :3]), frame.now - points[1:, 3]
-    bounds = ((0.0, FRESH_S, Tone.VEHICLE, 1), (FRESH_S, FADED_S, Tone.TRAIL, 2), (FADED_S, np.inf, Tone.FADED, 3))
+    bounds = (
+        (0.0, FRESH_S, Tone.VEHICLE, 1),
+        (FRESH_S, FADED_S, Tone.TRAIL, 2),
+        (FADED_S, np.inf, Tone.FADED, 3),
+    )
     return [
         Lines(segments[(age >= young) & (age < old)], tone, gap) for young, old, tone, gap in reversed(bounds)
     ]
@@ -150,6 +162,19 @@ def _led(frame: Frame, pilot: PilotState, *, chase: bool) -> list[Lines]:
             Lines(wireframe.path(np.array([place, stop])), Tone.TRAIL, 2),
         ]
     return scene
+
+
+def _draw_vehicle(canvas: Canvas, frame: Frame, eye: Camera, solids: Solids) -> None:
+    """Draw the vehicle so that it stands free of what is behind it."""
+    state = frame.snapshot.vehicle
+    assert state is not None
+    x, y = eye.dots(np.array(tuple(state.position)[:3]))
+    distance = math.dist(eye.place, tuple(state.position)[:3])
+    reach = _FREE_M * eye.focal / max(distance, 0.1)
+    across, down = np.meshgrid(np.arange(-reach, reach + 1), np.arange(-0.4 * reach, 0.4 * reach + 1))
+    disc = (across / reach) ** 2 + (down / (0.4 * reach)) ** 2 <= 1.0
+    canvas.clear(x + across[disc], y + down[disc])
+    draw(canvas, eye, solids, _vehicle(frame))
 
 
 def _vehicle(frame: Frame) -> list[Lines]:
@@ -186,6 +211,12 @@ def _labels(canvas: Canvas, frame: Frame, eye: Camera, solids: Solids) -> None:
     for number, gate in enumerate(gates(mission), 1):
         x, y, z = gate.center
         words.append(((x, y, z + gate.height / 2 + 0.3), f"gate {number}", Tone.TEXT))
+    for obstacle in mission.obstacle:
+        lower, upper = extent(obstacle)
+        x, y = 0.5 * (lower[0] + upper[0]), 0.5 * (lower[1] + upper[1])
+        if not isinstance(obstacle, Gate) and math.dist(here[:2], (x, y)) < _DIM_M:
+            tone = Tone.WARN if obstacle.name == frame.guarded_by else Tone.MUTED
+            words.append(((x, y, upper[2] + 0.15), obstacle.name, tone))
     for place, text, tone in words:
         if seen := visible(eye, solids, np.array(place)):
             canvas.letters(int(seen[0] / 2) - len(text) // 2, int(seen[1] / 4), text, tone)

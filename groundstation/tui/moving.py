@@ -101,7 +101,9 @@ def echoes(seen: Pose, distances: Sequence[float]) -> Floats:
     east, north, up, yaw = seen
     reach = np.where(np.isfinite(distances), distances, np.nan)
     angles = yaw + _SECTORS
-    return np.stack([east + reach * np.cos(angles), north + reach * np.sin(angles), np.full(len(reach), up)], axis=1)
+    return np.stack(
+        [east + reach * np.cos(angles), north + reach * np.sin(angles), np.full(len(reach), up)], axis=1
+    )
 
 
 def draw_hand(canvas: Canvas, view: View, place: Place, wanted: Place, leash: float, *, taut: bool) -> None:

@@ -57,7 +57,10 @@ def draw(canvas: Canvas, camera: Camera, solids: Solids, scene: list[Lines]) -> 
     segments, seen = before(camera.seen(every))
     depth = segments[:, :, 2].mean(axis=1)
     distant = depth > fars
-    gaps, tones = np.where(distant, 2 * gaps, gaps), np.where(distant & (tones == Tone.BESIDE), np.uint8(Tone.OBSTACLE), tones)
+    gaps, tones = (
+        np.where(distant, 2 * gaps, gaps),
+        np.where(distant & (tones == Tone.BESIDE), np.uint8(Tone.OBSTACLE), tones),
+    )
     segments, gaps, tones, through = segments[seen], gaps[seen], tones[seen], through[seen]
     x, y = camera.picture(segments)
     dots = dots_of(x[:, 0], y[:, 0], x[:, 1], y[:, 1], canvas.width, canvas.height, gaps)

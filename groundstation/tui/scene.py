@@ -79,7 +79,9 @@ def draw_fence(canvas: Canvas, view: View, fence: Fence, tone: Tone) -> None:
             canvas.line(view.x(np.array([side, side])), view.y(top), tone, gap=gap)
 
 
-def draw_guarded(canvas: Canvas, view: View, mission: Mission | None, name: str, fence: Fence = NO_FENCE) -> None:
+def draw_guarded(
+    canvas: Canvas, view: View, mission: Mission | None, name: str, fence: Fence = NO_FENCE
+) -> None:
     """Draw what the guard keeps away from so that it stands out: an obstacle with its name, or the fence.
 
     Args:
@@ -145,7 +147,9 @@ def silhouette(part: Primitive, view: View) -> Floats:
     across, upward = view.plane.flat(part.center)
     if isinstance(part, Sphere) or (view.plane is TOP and not isinstance(part, Box)):
         angles = np.linspace(0.0, math.tau, _SIDES + 1)
-        return np.stack([across + part.radius * np.cos(angles), upward + part.radius * np.sin(angles)], axis=1)
+        return np.stack(
+            [across + part.radius * np.cos(angles), upward + part.radius * np.sin(angles)], axis=1
+        )
     corners = np.array([(1, 1), (-1, 1), (-1, -1), (1, -1), (1, 1)], dtype=float)
     if view.plane is not TOP:
         lower, upper = extent(part)
@@ -172,7 +176,9 @@ def _grid(canvas: Canvas, view: View) -> None:
     """Dots on whole steps of a ruler, far enough apart to stay faint."""
     step = next((ruler for ruler in _RULERS if ruler / view.scale >= 10), _RULERS[-1])
     half_right, half_up = view.width * view.scale / 2, view.height * view.scale / 2
-    rights = np.arange(math.ceil((view.across - half_right) / step), (view.across + half_right) / step + 1) * step
+    rights = (
+        np.arange(math.ceil((view.across - half_right) / step), (view.across + half_right) / step + 1) * step
+    )
     ups = np.arange(math.ceil((view.upward - half_up) / step), (view.upward + half_up) / step + 1) * step
     grid_right, grid_up = np.meshgrid(rights, ups)
     canvas.plot(view.x(grid_right.ravel()), view.y(grid_up.ravel()), Tone.GRID)
@@ -189,7 +195,9 @@ def _hatch(canvas: Canvas, view: View, outline: Floats) -> None:
     inside: NDArray[np.bool_] = np.ones(len(columns), dtype=bool)
     for index in range(len(x) - 1):
         # Counter-clockwise in the world is clockwise in dots, which count downward.
-        turn = (x[index + 1] - x[index]) * (rows - y[index]) - (y[index + 1] - y[index]) * (columns - x[index])
+        turn = (x[index + 1] - x[index]) * (rows - y[index]) - (y[index + 1] - y[index]) * (
+            columns - x[index]
+        )
         inside &= turn <= 1e-9
     canvas.plot(columns[inside], rows[inside], Tone.BESIDE)
 
@@ -206,7 +214,9 @@ def _route(canvas: Canvas, view: View, mission: Mission) -> None:
         _head(canvas, (x[index], y[index]), (x[index + 1], y[index + 1]), 0.5, 3.0)
 
 
-def _head(canvas: Canvas, start: tuple[float, float], end: tuple[float, float], share: float, size: float) -> None:
+def _head(
+    canvas: Canvas, start: tuple[float, float], end: tuple[float, float], share: float, size: float
+) -> None:
     """Draw an arrow's head on a line, dots; none where the line is too short to have a direction."""
     length = math.dist(start, end)
     if not size * 2 < length < math.inf:
@@ -214,7 +224,9 @@ def _head(canvas: Canvas, start: tuple[float, float], end: tuple[float, float], 
     x, y = start[0] + share * (end[0] - start[0]), start[1] + share * (end[1] - start[1])
     angle = math.atan2(end[1] - start[1], end[0] - start[0])
     for side in (2.5, -2.5):
-        canvas.line([x, x + size * math.cos(angle + side)], [y, y + size * math.sin(angle + side)], Tone.ROUTE)
+        canvas.line(
+            [x, x + size * math.cos(angle + side)], [y, y + size * math.sin(angle + side)], Tone.ROUTE
+        )
 
 
 def _way_through(canvas: Canvas, view: View, gate: Gate) -> None:

@@ -133,5 +133,8 @@ def _points(mission: Mission | None) -> list[Point]:
         found += [corner for obstacle in mission.obstacle for corner in extent(obstacle)]
         for pad in mission.pad:
             east, north, up = pad.position
-            found += [(east - pad.radius, north - pad.radius, up), (east + pad.radius, north + pad.radius, up)]
+            found += [
+                (east - pad.radius, north - pad.radius, up),
+                (east + pad.radius, north + pad.radius, up),
+            ]
     return found

@@ -20,7 +20,7 @@ Floats = NDArray[np.float64]
 _SIDES = 16
 _TURN = np.linspace(0.0, math.tau, _SIDES + 1)
 _CORNERS = np.array([(x, y, z) for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)])
-_EDGES = np.array([(a, b) for a in range(8) for b in range(a + 1, 8) if bin(a ^ b).count("1") == 1])
+_EDGES = np.array([(a, b) for a in range(8) for b in range(a + 1, 8) if (a ^ b).bit_count() == 1])
 # Bodies of many faces lie within the round ones, so that a round one's own lines are not hidden by it.
 _WITHIN = 0.97
 _ARM_M, _ROTOR_M = 0.33, 0.17
@@ -140,7 +140,9 @@ def vehicle(position: Floats, yaw: float, pitch: float, roll: float) -> Floats:
     diagonal = _ARM_M / math.sqrt(2)
     hubs = np.array([(x, y, 0.0) for x, y in ((1, 1), (1, -1), (-1, -1), (-1, 1))]) * diagonal
     arms = np.stack([np.zeros((4, 3)), hubs], axis=1)
-    nose = path(np.array([(0.0, 0.0, 0.0), (0.42, 0.0, 0.0), (0.3, 0.07, 0.0), (0.42, 0.0, 0.0), (0.3, -0.07, 0.0)]))
+    nose = path(
+        np.array([(0.0, 0.0, 0.0), (0.42, 0.0, 0.0), (0.3, 0.07, 0.0), (0.42, 0.0, 0.0), (0.3, -0.07, 0.0)])
+    )
     rotors = [level_circle(hub + (0.0, 0.0, 0.05), _ROTOR_M) for hub in hubs]
     lines = np.concatenate([arms, nose, *rotors])
     cp, sp, cr, sr = math.cos(pitch), math.sin(pitch), math.cos(roll), math.sin(roll)

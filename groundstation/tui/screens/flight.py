@@ -166,7 +166,9 @@ class FlightScreen(Screen[None]):
         yield SystemCommand("Zoom out (-)", "Further away.", lambda: self.action_zoom(-1))
         for name in NAMES:
             title = f"Show {name} (tab)"
-            words = "As many instruments as there is room for." if name == ALL else "With all the room there is."
+            words = (
+                "As many instruments as there is room for." if name == ALL else "With all the room there is."
+            )
             yield SystemCommand(title, words, lambda name=name: self.show_page(name))
 
     def action_view(self) -> None:

@@ -35,9 +35,7 @@ class Attitude(Instrument):
         vehicle = frame.snapshot.vehicle
         nan = math.nan
         # Up is a positive pitch for a pilot; the vehicle's own axes have it turn the nose down.
-        yaw, roll, pitch = (
-            (vehicle.position[3], vehicle.roll, -vehicle.pitch) if vehicle else (nan, nan, nan)
-        )
+        yaw, roll, pitch = (vehicle.position[3], vehicle.roll, -vehicle.pitch) if vehicle else (nan, nan, nan)
         turn = vehicle.velocity[3] if vehicle else nan
         canvas = Canvas(width, max(height - 2, 1))
         draw_horizon(canvas, roll, pitch)
@@ -75,6 +73,8 @@ def draw_horizon(canvas: Canvas, roll: float, pitch: float) -> None:
         for step in _LADDER:
             at = down - step * _DOTS_A_DEGREE
             _stroke(canvas, (x + s * at, y + c * at), (c, -s), (-_RUNG, _RUNG), Tone.MUTED)
+    across, under = np.meshgrid(np.arange(-_GAP - _WINGS - 1, _GAP + _WINGS + 2), np.arange(-1, 5))
+    canvas.clear(x + across, y + under)
     for side in (-1, 1):
         near, far = x + side * _GAP, x + side * (_GAP + _WINGS)
         canvas.line([far, near, near], [y, y, y + 3], Tone.VEHICLE)

@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 from groundstation.messages import Severity
-from groundstation.tui.alarms import Alarm
+from groundstation.tui.alarms import Alarm, Alarms
 from groundstation.tui.frame import Frame
 from groundstation.tui.hints import next_step
-from groundstation.tui.rows import Row, Span, fit, span_of_time, width_of
-from groundstation.tui.theme import Tone
+from groundstation.tui.rows import Row, fit, span_of_time
+from groundstation.tui.theme import PRIORITIES, Tone
 from groundstation.tui.widgets.instrument import Instrument
 
-WORDS = {Severity.INFO: "◇ ADVICE", Severity.WARNING: "▲ CAUTION", Severity.ALARM: "■ ALARM"}
-_TONES = {Severity.WARNING: Tone.CAUTION, Severity.ALARM: Tone.ALARM}
+_TONES = {Severity.INFO: Tone.NOTE, Severity.WARNING: Tone.CAUTION, Severity.ALARM: Tone.ALARM}
 
 
 class Banner(Instrument):
@@ -24,25 +23,30 @@ class Banner(Instrument):
         del height
         alarm = frame.alarms.first()
         if alarm is None:
-            return [fit([(" › ", Tone.NOTE), (next_step(frame), Tone.NOTE)], width)]
-        spans, key = _alarm(alarm, frame.now), _key(frame, alarm)
-        tone = spans[0][1]
-        room = max(width - width_of(key), 0)
-        return [[*fit(spans, room - 1), (" ", tone), *key] if width > 2 * width_of(key) else fit(spans, width)]
+            tone, left = Tone.NOTE, f" › {next_step(frame)}"
+        else:
+            tone = Tone.WARN if alarm.seen else _TONES[alarm.severity]
+            left = f" {headline(alarm, frame.now)}"
+        right = _right(frame.alarms, alarm)
+        room = max(width - len(right), 0)
+        return [[*fit([(left, tone), (" " * room, tone)], room), (right, tone)]]
 
 
-def _alarm(alarm: Alarm, now: float) -> Row:
-    tone = Tone.WARN if alarm.seen else _TONES[alarm.severity]
-    head = WORDS[alarm.severity] + (" seen" if alarm.seen else "")
+def headline(alarm: Alarm, now: float) -> str:
+    """Return an alarm in a line: priority, how often, whether it is over or seen, and what it is."""
     times = f" ×{alarm.count}" if alarm.count > 1 else ""
-    if alarm.active:
-        return [(f" {head}{times}  ", tone), (alarm.text, tone), (" " * 400, tone)]
-    return [(f" {head} WAS{times}  ", tone), (f"{alarm.text} {span_of_time(now - alarm.ended)} ago", tone), (" " * 400, tone)]
+    seen = " seen" if alarm.seen else ""
+    over = "" if alarm.active else f" {span_of_time(now - alarm.ended)} ago"
+    return f"{PRIORITIES[alarm.severity]}{times}{seen}{over}  {alarm.text}"
 
 
-def _key(frame: Frame, alarm: Alarm) -> list[Span]:
-    """Return how many more there are, and the key that acknowledges."""
-    more = sum(other.severity > Severity.INFO for other in frame.alarms.listed()) - 1
-    tone = Tone.WARN if alarm.seen else _TONES[alarm.severity]
-    words: list[Span] = [(f" +{more} more", tone)] if more > 0 else []
-    return words if alarm.seen else [*words, (" o seen ", tone)]
+def _right(alarms: Alarms, shown: Alarm | None) -> str:
+    """Return how many more there are, the key that acknowledges, and whether the bell is muted."""
+    listed = alarms.listed()
+    serious = sum(alarm is not shown and alarm.severity > Severity.INFO for alarm in listed)
+    advice = sum(alarm is not shown and alarm.severity is Severity.INFO for alarm in listed)
+    words = [f"▲ +{serious}"] if serious else []
+    words += [f"◇ {advice}"] if advice else []
+    words += ["b bell off"] if alarms.muted else []
+    words += ["o seen"] if shown is not None and not shown.seen else []
+    return f" {'  '.join(words)} " if words else ""

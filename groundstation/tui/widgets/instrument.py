@@ -17,6 +17,8 @@ from groundstation.tui.rows import Row, fit, span_of_time
 from groundstation.tui.theme import Tone, styles_of
 
 _STALE_CLASS = "-stale"
+# Younger than this is simply fresh, s.
+_FRESH_S = 0.1
 
 
 class Instrument(Widget, can_focus=False):
@@ -37,15 +39,16 @@ class Instrument(Widget, can_focus=False):
         self._frame: Frame | None = None
         self._styles: dict[Tone, Style] = {}
         self._turn = 0
+        self.title = str(self.BORDER_TITLE or "")
 
     def draw(self, frame: Frame, width: int, height: int) -> list[Row]:
         """Return the rows of the content area, at most `height` of `width` cells each."""
         raise NotImplementedError
 
     def data_age(self, frame: Frame) -> float:
-        """Return the age of what it shows, s; infinite where nothing has come yet."""
+        """Return the age of what it shows, s; infinite where nothing has come yet, NaN where it has none of its own."""
         del frame
-        return 0.0
+        return math.nan
 
     def footnote(self, frame: Frame) -> str:
         """Return what stands in the lower border while the data is fresh."""
@@ -75,7 +78,7 @@ class Instrument(Widget, can_focus=False):
             self.refresh(*_bands(changed, width))
 
     def _note(self, frame: Frame) -> None:
-        """Write into the lower border how old the data is, or the footnote."""
+        """Write into the upper border what it is and how old, and into the lower one the footnote, or that it is stale."""
         age = self.data_age(frame)
         stale = age > self.STALE_S
         if stale != self.has_class(_STALE_CLASS):
@@ -85,6 +88,9 @@ class Instrument(Widget, can_focus=False):
         words = old if stale else self.footnote(frame)
         if words != (self.border_subtitle or ""):
             self.border_subtitle = words
+        title = f"{self.title} · {_rounded(age)}" if self.title and math.isfinite(age) else self.title
+        if title != (self.border_title or ""):
+            self.border_title = title
 
     def render_line(self, y: int) -> Strip:
         """Return one painted line."""
@@ -110,6 +116,11 @@ class Instrument(Widget, can_focus=False):
         self._rows = []
         if self._frame is not None:
             self.show(self._frame)
+
+
+def _rounded(age: float) -> str:
+    """Return an age as long as it is not old: in steps that a healthy one never leaves, so that nothing flickers."""
+    return f"<{_FRESH_S:g} s" if age < _FRESH_S else span_of_time(math.floor(10.0 * age) / 10.0)
 
 
 def _bands(lines: list[int], width: int) -> list[Region]:

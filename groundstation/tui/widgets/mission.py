@@ -12,7 +12,7 @@ from groundstation.tui.rows import UNKNOWN, Row, clock, gauge, quantity, width_o
 from groundstation.tui.theme import Tone
 from groundstation.tui.widgets.instrument import Instrument
 
-_LABEL = 11
+_LABEL = 12
 # What is only known once the target has been held.
 _AT_THE_END = frozenset({"precision", "time"})
 
@@ -26,7 +26,7 @@ class Mission(Instrument):
 
     def data_age(self, frame: Frame) -> float:
         """Age of the progress; without a mission there is none to be old."""
-        return 0.0 if frame.run.mission is None else frame.age(frame.snapshot.progress)
+        return math.nan if frame.run.mission is None else frame.age(frame.snapshot.progress)
 
     def draw(self, frame: Frame, width: int, height: int) -> list[Row]:
         """Draw as many rows as there is room for."""
@@ -53,18 +53,40 @@ def _progress(frame: Frame, mission: MissionFile, width: int) -> list[Row]:
         figure = f" {done} of {progress.legs} points"
         head = _row("way")
         strip = gauge(done, progress.legs, width - width_of(head) - len(figure) - 1, Tone.TARGET)
-        rows.append([*head, *((text, Tone.TARGET if tone is Tone.WARN else tone) for text, tone in strip), (figure, Tone.TEXT)])
-    target = f", target {quantity(progress.target_distance, 'm', 1)} away" if math.isfinite(progress.target_distance) else ""
+        rows.append(
+            [
+                *head,
+                *((text, Tone.TARGET if tone is Tone.WARN else tone) for text, tone in strip),
+                (figure, Tone.TEXT),
+            ]
+        )
+    target = (
+        f", target {quantity(progress.target_distance, 'm', 1)} away"
+        if math.isfinite(progress.target_distance)
+        else ""
+    )
     rows.insert(0, _row("stage", (f"{stage}{target}", Tone.STRONG)))
     if figures is not None:
         limit = mission.criteria.time_limit_s
         late = figures.duration > limit
         tone = Tone.WARN if late else Tone.STRONG
         rows.append(
-            _row("clock", (f"{'▲ ' if late else ''}{clock(figures.duration)}", tone), (f" of {clock(limit)} min", Tone.MUTED))
+            _row(
+                "clock",
+                (f"{'▲ ' if late else ''}{clock(figures.duration)}", tone),
+                (f" of {clock(limit)} min", Tone.MUTED),
+            )
         )
-    touched = (f"▲ {progress.collisions} collisions", Tone.WARN) if progress.collisions else ("no collision", Tone.TEXT)
-    gates = [(f", {figures.gates - figures.gates_missed} of {figures.gates} gates", Tone.TEXT)] if figures and figures.gates else []
+    touched = (
+        (f"▲ {progress.collisions} collisions", Tone.WARN)
+        if progress.collisions
+        else ("no collision", Tone.TEXT)
+    )
+    gates = (
+        [(f", {figures.gates - figures.gates_missed} of {figures.gates} gates", Tone.TEXT)]
+        if figures and figures.gates
+        else []
+    )
     near = (f", {quantity(progress.clearance, 'm', 1)} clear", Tone.TEXT)
     return [*rows, _row("obstacles", touched, *([near] if math.isfinite(progress.clearance) else []), *gates)]
 
@@ -84,5 +106,11 @@ def _score(frame: Frame, mission: MissionFile, width: int) -> list[Row]:
             continue
         figure = f" {100.0 * part.share:3.0f} %"
         strip = gauge(part.share, 1.0, width - width_of(head) - len(figure) - 1, Tone.OK)
-        rows.append([*head, *((text, Tone.OK if tone is Tone.WARN else tone) for text, tone in strip), (figure, Tone.STRONG)])
+        rows.append(
+            [
+                *head,
+                *((text, Tone.OK if tone is Tone.WARN else tone) for text, tone in strip),
+                (figure, Tone.STRONG),
+            ]
+        )
     return rows

@@ -74,7 +74,7 @@ class Overview(Instrument):
         """See the flight from the next place."""
         order = list(Sight)
         self.sight = order[(order.index(self.sight) + 1) % len(order)]
-        self.border_title = self.sight.value
+        self.title = self.sight.value
         self._again()
 
     def follow_or_whole(self) -> None:

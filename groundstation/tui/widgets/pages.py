@@ -26,6 +26,8 @@ NAMES = (
     "events",
 )
 
+_HEAD = " ⇥ "
+
 
 class Pages(Instrument):
     """One line.
@@ -51,17 +53,20 @@ class Pages(Instrument):
     def draw(self, frame: Frame, width: int, height: int) -> list[Row]:
         """Draw the names after the key that goes on."""
         del frame, width, height
-        row: Row = [("⇥", Tone.KEY)]
+        row: Row = [(_HEAD, Tone.KEY)]
         for name in NAMES:
             here = name == self.page
-            row.append((f"▸{name.upper()}◂" if here else f" {name} ", Tone.CHIP if here else Tone.MUTED))
+            row += [
+                (name.upper() if here else name, Tone.CHIP_HAND if here else Tone.MUTED),
+                (" ", Tone.TEXT),
+            ]
         return [row]
 
     def on_click(self, event: events.Click) -> None:
         """Choose the instrument under the pointer."""
-        start = 1
+        start = len(_HEAD)
         for name in NAMES:
-            end = start + len(name) + 2
+            end = start + len(name) + 1
             if start <= event.x < end:
                 self._choose(name)
                 return

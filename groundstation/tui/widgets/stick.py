@@ -38,7 +38,7 @@ class Stick(Instrument):
 
     def __init__(self, hand: Hand | None, *, id: str | None = None) -> None:  # noqa: A002 - Textual's own name
         super().__init__(id=id)
-        self.border_title = "stick" if hand is not None else "handle"
+        self.title = "stick" if hand is not None else "handle"
         self._hand = hand
         self._held: int | None = None
         self._empty: Canvas | None = None
@@ -189,7 +189,9 @@ class Pad:
         reach = length * self._reach + _KNOB
         end_x, end_y = x + pull[0] / length * reach, y - pull[1] / length * reach
         angle = math.atan2(pull[1], pull[0])
-        barbs = [(end_x + 3 * math.cos(angle + side), end_y - 3 * math.sin(angle + side)) for side in (2.6, -2.6)]
+        barbs = [
+            (end_x + 3 * math.cos(angle + side), end_y - 3 * math.sin(angle + side)) for side in (2.6, -2.6)
+        ]
         points = [(x, y), (end_x, end_y), barbs[0], (end_x, end_y), barbs[1]]
         canvas.line([point[0] for point in points], [point[1] for point in points], Tone.FORCE)
 

@@ -8,7 +8,7 @@ from groundstation.messages import Severity, Stream
 from groundstation.tui import judge
 from groundstation.tui.frame import REPORT_STALE_S, STATUS_STALE_S, Frame
 from groundstation.tui.notes import words
-from groundstation.tui.rows import Row, quantity
+from groundstation.tui.rows import Row, quantity, span_of_time
 from groundstation.tui.theme import MARKS, TONES, Tone
 from groundstation.tui.widgets.instrument import Instrument
 
@@ -25,11 +25,11 @@ class System(Instrument):
     def draw(self, frame: Frame, width: int, height: int) -> list[Row]:
         """Draw what is known."""
         snapshot = frame.snapshot
-        rows = _processes(frame)
+        rows = [*_processes(frame), *_ages(frame)]
         rows += _aged(_servo(frame), frame.age(snapshot.servo), REPORT_STALE_S)
         rows += _aged(_link(frame), frame.age(snapshot.status), STATUS_STALE_S)
         rows += _aged(_device(frame), frame.age(snapshot.device), REPORT_STALE_S)
-        return [*rows, *_files(frame, width)][:height]
+        return [*rows, *_screen(frame), *_files(frame, width)][:height]
 
 
 def _aged(rows: list[Row], age: float, limit: float) -> list[Row]:
@@ -55,6 +55,38 @@ def _processes(frame: Frame) -> list[Row]:
         else:
             rows.append(part)
     return rows
+
+
+def _ages(frame: Frame) -> list[Row]:
+    """Return how old each record is, and how often is painted."""
+    shown = frame.snapshot
+    ages = (
+        ("handle", shown.handle),
+        ("state", shown.vehicle),
+        ("pilot", shown.pilot),
+        ("setpoint", shown.setpoint),
+    )
+    slow = (("status", shown.status), ("servo", shown.servo), ("device", shown.device))
+    return [
+        _row(
+            label,
+            ("  ".join(f"{name} {span_of_time(frame.age(record))}" for name, record in part), Tone.TEXT),
+        )
+        for label, part in (("ages", ages), ("", slow))
+    ]
+
+
+def _screen(frame: Frame) -> list[Row]:
+    full = frame.run.settings.rates.screen
+    if not math.isfinite(frame.paint_hz):
+        return []
+    slower = frame.paint_hz < 0.99 * full
+    words = "▲ the terminal is slow" if slower else "as often as is asked for"
+    return [
+        _row(
+            "painting", (f"{quantity(frame.paint_hz, 'Hz', 0)}, {words}", Tone.WARN if slower else Tone.TEXT)
+        )
+    ]
 
 
 def _servo(frame: Frame) -> list[Row]:

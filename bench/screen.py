@@ -1,7 +1,7 @@
 """What the screen costs while it flies: its share of a core at 200×60 and 30 Hz, and ticks the servo lost to it.
 
-The paper's mission on the simulated vehicle, in a pseudo-terminal that takes every byte at once; the stick is moved all the
-time, so that every instrument changes. Beside it, in the same run, the same flight without a screen.
+The paper's mission on the simulated vehicle, in a pseudo-terminal that takes every byte at once; the stick is moved
+all the time, so that every instrument changes. Beside it, in the same run, the same flight without a screen.
 """
 
 from __future__ import annotations

@@ -11,9 +11,11 @@ from canned_flight import NOTHING, CannedFlight, canned_run
 from groundstation.messages import Event, Phase, ServoReport, Severity, VehicleStatus
 from groundstation.tui import judge
 from groundstation.tui.acts import ACTS
-from groundstation.tui.alerts import distance_to_target, next_step, worst
+from groundstation.tui.alarms import Alarms
+from groundstation.tui.alerts import conditions
 from groundstation.tui.frame import Frame
 from groundstation.tui.hand import CENTRED
+from groundstation.tui.hints import distance_to_target, next_step
 from groundstation.tui.track import History, Track
 
 INFO, WARNING, ALARM = Severity.INFO, Severity.WARNING, Severity.ALARM
@@ -32,6 +34,14 @@ def frame(snapshot=None, guarded_by: str = "", **states: str) -> Frame:
         snapshot=shown, run=RUN, started=1000.0, states=states, stick=CENTRED,
         hindrances={act.name: "" for act in ACTS}, guarded_by=guarded_by, notes=(), track=Track(), history=History(),
     )  # fmt: skip
+
+
+def worst(shown: Frame) -> tuple[Severity, str]:
+    """Return what the banner says of a frame that is the first of all."""
+    alarms = Alarms()
+    alarms.look(conditions(shown), shown.now)
+    first = alarms.first()
+    return (first.severity, first.text) if first is not None else (INFO, next_step(shown))
 
 
 @pytest.mark.parametrize(

@@ -1,4 +1,4 @@
-"""The alarms: what is wrong in three priorities, each told once, kept until it is seen, and when the bell rings. Pure.
+"""The alarms: what is wrong in three priorities, each told once and kept until seen; when the bell rings. Pure.
 
 A condition that comes and goes is one alarm with a count. One that has ended stays to be seen: an alarm until it is
 acknowledged, a caution for a moment; an advisory goes with its cause. What has been acknowledged is told anew only

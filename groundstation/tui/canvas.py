@@ -22,6 +22,8 @@ _BITS = tuple(
 )
 _SPACE = ord(" ")
 _TONES = tuple(Tone)
+# Further away than this nothing is drawn, dots.
+_FAR = 1e9
 # Longer lines are nobody's drawing, dots.
 _LONGEST = 4096
 
@@ -85,7 +87,8 @@ class Canvas:
             gap: Only every so many dots, for dotted lines.
         """
         across, down = np.asarray(x, dtype=float), np.asarray(y, dtype=float)
-        dots = dots_of(across[:-1], down[:-1], across[1:], down[1:], self.width, self.height, gap)
+        ends = [np.stack([axis[:-1], axis[1:]], axis=1) for axis in (across, down)]
+        dots = dots_of(ends[0], ends[1], (self.width, self.height), gap)
         self.plot(dots.x, dots.y, tone)
 
     def letters(self, column: int, row: int, text: str, tone: Tone) -> None:
@@ -125,36 +128,36 @@ class Dots(NamedTuple):
     line: NDArray[np.intp]
 
 
-def dots_of(
-    x0: Floats, y0: Floats, x1: Floats, y1: Floats, width: int, height: int, gap: int | NDArray[np.intp] = 1
-) -> Dots:
+def dots_of(x: Floats, y: Floats, size: tuple[int, int], gap: int | NDArray[np.intp] = 1) -> Dots:
     """Return the dots of straight lines, as far as they are within a picture (Liang and Barsky, 1984).
 
     Args:
-        x0, y0, x1, y1: Their ends, dots, shape (n,). Lines with an end that is not finite have no dots.
-        width, height: Of the picture, dots.
+        x: Their ends, dots from the left, shape (n, 2). Lines with an end that is not finite have no dots.
+        y: Likewise from the top.
+        size: Width and height of the picture, dots.
         gap: Only every so many dots, of all lines or of each.
     """
-    finite = np.isfinite(x0) & np.isfinite(y0) & np.isfinite(x1) & np.isfinite(y1)
-    # What is too far away to be reckoned with is not finite either.
-    finite &= np.maximum(np.maximum(abs(x0), abs(x1)), np.maximum(abs(y0), abs(y1))) < 1e9
-    ways = np.where(finite, x1 - x0, 0.0), np.where(finite, y1 - y0, 0.0)
-    begin, end = np.zeros(len(x0)), np.where(finite, 1.0, -1.0)
-    for start, way, size in ((x0, ways[0], width), (y0, ways[1], height)):
+    # What is too far away to be reckoned with is not finite either; NaN is not less than anything.
+    finite = ((abs(x) < _FAR) & (abs(y) < _FAR)).all(axis=1)
+    starts = np.where(finite, x[:, 0], 0.0), np.where(finite, y[:, 0], 0.0)
+    ways = np.where(finite, x[:, 1] - x[:, 0], 0.0), np.where(finite, y[:, 1] - y[:, 0], 0.0)
+    begin, end = np.zeros(len(x)), np.where(finite, 1.0, -1.0)
+    for start, way, edge in zip(starts, ways, size, strict=True):
         still = abs(way) < 1e-9
         safe = np.where(still, 1.0, way)
-        near, far = (-1.0 - start) / safe, (size - start) / safe
+        near, far = (-1.0 - start) / safe, (edge - start) / safe
         begin = np.where(still, begin, np.maximum(begin, np.minimum(near, far)))
         end = np.where(still, end, np.minimum(end, np.maximum(near, far)))
-        end = np.where(still & ((start < -1) | (start > size)), -1.0, end)
+        end = np.where(still & ((start < -1) | (start > edge)), -1.0, end)
     steps = np.rint((end - begin) * np.maximum(abs(ways[0]), abs(ways[1])))
     whole = np.clip(np.where(end >= begin, steps, 0.0), 0, _LONGEST).astype(np.intp)
     counts = np.where(end >= begin, whole // gap + 1, 0)
-    which = np.repeat(np.arange(len(x0)), counts)
+    which = np.repeat(np.arange(len(x)), counts)
     firsts = np.cumsum(counts) - counts
     number = (np.arange(len(which)) - firsts[which]) * (gap if isinstance(gap, int) else gap[which])
     share = begin[which] + (end - begin)[which] * number / np.maximum(whole, 1)[which]
-    return Dots(x0[which] + ways[0][which] * share, y0[which] + ways[1][which] * share, share, which)
+    across, down = (start[which] + way[which] * share for start, way in zip(starts, ways, strict=True))
+    return Dots(across, down, share, which)
 
 
 def _runs(codes: NDArray[np.uint32], tones: NDArray[np.uint8]) -> list[Row]:

@@ -39,7 +39,8 @@ def camera(frame: Frame, columns: int, rows: int, zoom: float, *, chase: bool) -
 
     Args:
         frame: Of which the picture is.
-        columns, rows: Of the picture, cells.
+        columns: Of the picture, cells.
+        rows: Likewise.
         zoom: Nearer where above 1.
         chase: From behind the vehicle, not from it.
     """
@@ -194,7 +195,7 @@ def _vehicle(frame: Frame) -> list[Lines]:
     if ranges is not None and frame.age(ranges) <= 0.5:
         marks = echoes((east, north, up, yaw), tuple(ranges.ring))
         marks = marks[np.isfinite(marks).all(axis=1)]
-        scene.append(Lines(np.stack([marks, marks + (0.0, 0.0, 0.15)], axis=1), Tone.TEXT))
+        scene.append(Lines(np.stack([marks, marks + np.array([0.0, 0.0, 0.15])], axis=1), Tone.TEXT))
     return scene
 
 

@@ -1,4 +1,4 @@
-"""A flat map as pure drawing, what moves: way flown, vehicle, where it will be, hand, echoes. World points are m, ENU."""
+"""A flat map as pure drawing, what moves: way flown, vehicle, forecast, hand, echoes. World points are m, ENU."""
 
 from __future__ import annotations
 

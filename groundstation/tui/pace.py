@@ -1,7 +1,7 @@
 """How often to paint: as often as the terminal takes it. Pure.
 
-A terminal that is slow, over a radio or a long SSH line, lets its writer wait; then the screen's own turns come late, and
-that is what is measured. Fewer frames are painted until turns come in time again; nothing else slows down with them.
+A terminal that is slow, over a radio or a long SSH line, lets its writer wait; then the screen's own turns come late,
+and that is what is measured. Fewer frames are painted until turns come in time again; nothing else slows down.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ _LATE_SHARE, _LATE_PERIODS = 0.25, 1.6
 _WINDOW_S = 1.0
 # After so long without trouble a quicker pace is tried; twice as long after each try that failed, s.
 _TRY_S, _TRY_LONGEST_S = 4.0, 64.0
-# The paces are those at which every second, third, ... turn paints.
+# If trouble comes so soon after it, the try has failed, s.
 _STEP_UP_FAILED_S = 3.0
 
 

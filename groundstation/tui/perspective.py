@@ -63,7 +63,7 @@ def draw(canvas: Canvas, camera: Camera, solids: Solids, scene: list[Lines]) -> 
     )
     segments, gaps, tones, through = segments[seen], gaps[seen], tones[seen], through[seen]
     x, y = camera.picture(segments)
-    dots = dots_of(x[:, 0], y[:, 0], x[:, 1], y[:, 1], canvas.width, canvas.height, gaps)
+    dots = dots_of(x, y, (canvas.width, canvas.height), gaps)
     hidden = _hidden(camera, solids, segments, dots)
     sparse = through[dots.line] & (np.arange(len(hidden)) % _THROUGH == 0)
     shown = ~hidden | sparse
@@ -81,23 +81,15 @@ def visible(camera: Camera, solids: Solids, point: Floats) -> tuple[float, float
 
 def _hidden(camera: Camera, solids: Solids, segments: Floats, dots: Dots) -> NDArray[np.bool_]:
     """Say which dots are behind a body; of neighbours only one is asked about, the others are as it is."""
-    x, y, share, line = (each[::_ASKED] for each in dots)
-    hidden = solids.hide(camera.place, _places(camera, segments, x, y, share, line))
+    asked = Dots(*(each[::_ASKED] for each in dots))
+    hidden = solids.hide(camera.place, _places(camera, segments, asked))
     return np.repeat(hidden, _ASKED)[: len(dots.x)]
 
 
-def _places(
-    camera: Camera, segments: Floats, x: Floats, y: Floats, share: Floats, line: NDArray[np.intp]
-) -> Floats:
-    """Return where in the world the dots of segments are; along a segment 1/depth goes evenly."""
+def _places(camera: Camera, segments: Floats, dots: Dots) -> Floats:
+    """Return where in the world the dots of segments are, m; along a segment 1/depth goes evenly."""
     nearness = 1.0 / segments[:, :, 2]
-    depth = 1.0 / (nearness[line, 0] + share * (nearness[line, 1] - nearness[line, 0]))
-    seen = np.stack(
-        [
-            (x - (camera.width - 1) / 2) / camera.focal * depth,
-            (y - (camera.height - 1) / 2) / camera.focal * depth,
-            depth,
-        ],
-        axis=1,
-    )
-    return seen @ camera.axes() + np.array(camera.place)
+    depth = 1.0 / (nearness[dots.line, 0] + dots.share * (nearness[dots.line, 1] - nearness[dots.line, 0]))
+    across = (dots.x - (camera.width - 1) / 2) / camera.focal * depth
+    down = (dots.y - (camera.height - 1) / 2) / camera.focal * depth
+    return np.stack([across, down, depth], axis=1) @ camera.axes() + np.array(camera.place)

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from groundstation.messages import Severity
+from groundstation.tui.alarms import Alarm
 from groundstation.tui.frame import Frame
 from groundstation.tui.notes import Note, merged
 from groundstation.tui.rows import Row, clock, fit, wrapped
-from groundstation.tui.alarms import Alarm
 from groundstation.tui.theme import MARKS, TONES, Tone
 from groundstation.tui.widgets.banner import headline
 from groundstation.tui.widgets.instrument import Instrument

@@ -46,7 +46,7 @@ class Instrument(Widget, can_focus=False):
         raise NotImplementedError
 
     def data_age(self, frame: Frame) -> float:
-        """Return the age of what it shows, s; infinite where nothing has come yet, NaN where it has none of its own."""
+        """Return the age of what it shows, s; infinite where nothing has come yet, NaN where it has no one age."""
         del frame
         return math.nan
 
@@ -78,7 +78,7 @@ class Instrument(Widget, can_focus=False):
             self.refresh(*_bands(changed, width))
 
     def _note(self, frame: Frame) -> None:
-        """Write into the upper border what it is and how old, and into the lower one the footnote, or that it is stale."""
+        """Write into the upper border what it is and how old, and below the footnote, or that it is stale."""
         age = self.data_age(frame)
         stale = age > self.STALE_S
         if stale != self.has_class(_STALE_CLASS):

@@ -112,7 +112,7 @@ class FlightScreen(Screen[None]):
                 yield Numbers(id="numbers")
                 yield self._stick
                 yield Force(id="force")
-                yield Tracking(id="error")
+                yield Tracking(id="tracking")
                 yield Velocity(id="velocity")
                 yield System(id="system")
             with Vertical(id="story"):

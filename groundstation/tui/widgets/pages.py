@@ -18,7 +18,7 @@ NAMES = (
     "attitude",
     "stick",
     "force",
-    "error",
+    "tracking",
     "velocity",
     "curves",
     "mission",

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import itertools
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -60,7 +62,7 @@ def test_tries_that_fail_become_rarer():
         terminal.turn(1.0)
         rates.append(terminal.pace.rate)
     tries = [index for index in range(1, 200) if rates[index] > rates[index - 1]]
-    gaps = [later - earlier for earlier, later in zip(tries, tries[1:], strict=False)]
+    gaps = [later - earlier for earlier, later in itertools.pairwise(tries)]
     assert gaps[-1] > 2 * gaps[0]
 
 

@@ -9,11 +9,11 @@ from canned_flight import canned_run
 from hypothesis import given
 from hypothesis import strategies as st
 
+from groundstation.training.mission import Fence
 from groundstation.tui import scene
 from groundstation.tui.canvas import Canvas
 from groundstation.tui.theme import Tone
 from groundstation.tui.view import SIDE_EAST, SIDE_NORTH, TOP, View, framing, side_of, zoomed
-from groundstation.training.mission import Fence
 from sim.environment.shapes import extent
 from sim.scenario import Box, Cylinder, Gate, Pad, Sphere, Wall
 
@@ -122,9 +122,7 @@ def test_the_scale_is_as_long_as_it_says():
 
 def test_from_the_side_up_is_up_and_the_mission_is_seen_at_its_longest():
     assert side_of(MISSION) is SIDE_EAST
-    northward = msgspec.structs.replace(
-        MISSION, route=((0.0, 30.0, 2.0),), obstacle=(), pad=(), target=None
-    )
+    northward = msgspec.structs.replace(MISSION, route=((0.0, 30.0, 2.0),), obstacle=(), pad=(), target=None)
     assert side_of(northward) is SIDE_NORTH
     view = framing(MISSION, [], 200, 100, SIDE_EAST)
     x, y = view.dots(np.array([(3.0, 100.0, 1.0), (4.0, -100.0, 2.0)]))
@@ -133,7 +131,9 @@ def test_from_the_side_up_is_up_and_the_mission_is_seen_at_its_longest():
     assert all(view.holds([view.plane.flat(point)]) for point in MISSION.route)
 
 
-@given(st.lists(st.tuples(metres, metres), min_size=1, max_size=4), st.sampled_from((TOP, SIDE_EAST, SIDE_NORTH)))
+@given(
+    st.lists(st.tuples(metres, metres), min_size=1, max_size=4), st.sampled_from((TOP, SIDE_EAST, SIDE_NORTH))
+)
 def test_every_plane_frames_all_points(points, plane):
     assert framing(None, [*points], 200, 120, plane).holds(points)
 

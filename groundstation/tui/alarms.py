@@ -126,7 +126,8 @@ class Alarms:
         pressing = (
             alarm
             for alarm in self.listed()
-            if alarm.severity is Severity.ALARM or (alarm.severity is Severity.WARNING and not alarm.seen)
+            if (not alarm.seen and alarm.severity is Severity.WARNING)
+            or (alarm.severity is Severity.ALARM and (not alarm.seen or alarm.active))
         )
         return next(pressing, None)
 
@@ -144,7 +145,9 @@ class Alarms:
             self._due |= severity is Severity.ALARM
         if again:
             alarm.count, alarm.began = alarm.count + 1, now
-        alarm.severity, alarm.text, alarm.told, alarm.ended = severity, text, told, math.inf
+        # What was an alarm that nobody has seen yet is one until somebody has.
+        alarm.severity = severity if alarm.seen else max(severity, alarm.severity)
+        alarm.text, alarm.told, alarm.ended = text, told, math.inf
 
     def _forget(self, now: float) -> None:
         """Let go what has ended and need not be told any more."""

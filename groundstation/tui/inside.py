@@ -9,7 +9,7 @@ import numpy as np
 from groundstation.messages import Phase, PilotState
 from groundstation.training.mission import Fence, Mission
 from groundstation.tui import wireframe
-from groundstation.tui.camera import Camera, Solids
+from groundstation.tui.camera import NOTHING, Camera, Solids
 from groundstation.tui.canvas import Canvas
 from groundstation.tui.frame import Frame
 from groundstation.tui.moving import FADED_S, FRESH_S, echoes
@@ -20,7 +20,6 @@ from groundstation.tui.tape import heading_tape
 from groundstation.tui.theme import Tone
 from groundstation.tui.wireframe import Floats
 from sim.environment.shapes import extent
-from sim.scenario import Gate
 
 # How far behind the vehicle and above it the chasing camera is at zoom 1, m, and how far down it looks, rad.
 _BEHIND_M, _ABOVE_M, _DOWN = 3.0, 1.5, -0.34
@@ -200,27 +199,28 @@ def _vehicle(frame: Frame) -> list[Lines]:
 
 
 def _labels(canvas: Canvas, frame: Frame, eye: Camera, solids: Solids) -> None:
-    """Write names over what is seen: the target with how far it is, the gates with their numbers."""
+    """Write names over what is seen: the target, through everything, with how far it is; gates with their numbers."""
     mission, vehicle = frame.run.mission, frame.snapshot.vehicle
     if mission is None or vehicle is None:
         return
     here = tuple(vehicle.position)[:3]
-    words: list[tuple[tuple[float, float, float], str, Tone]] = []
-    if mission.target is not None:
-        x, y, z = mission.target.position
-        words.append(((x, y, z + 0.4), f"target {math.dist(here, (x, y, z)):.1f} m", Tone.TARGET))
-    for number, gate in enumerate(gates(mission), 1):
-        x, y, z = gate.center
-        words.append(((x, y, z + gate.height / 2 + 0.3), f"gate {number}", Tone.TEXT))
+    numbers = {gate.name: f"gate {number}" for number, gate in enumerate(gates(mission), 1)}
     for obstacle in mission.obstacle:
         lower, upper = extent(obstacle)
         x, y = 0.5 * (lower[0] + upper[0]), 0.5 * (lower[1] + upper[1])
-        if not isinstance(obstacle, Gate) and math.dist(here[:2], (x, y)) < _DIM_M:
+        if math.dist(here[:2], (x, y)) < _DIM_M:
             tone = Tone.WARN if obstacle.name == frame.guarded_by else Tone.MUTED
-            words.append(((x, y, upper[2] + 0.15), obstacle.name, tone))
-    for place, text, tone in words:
-        if seen := visible(eye, solids, np.array(place)):
-            canvas.letters(int(seen[0] / 2) - len(text) // 2, int(seen[1] / 4), text, tone)
+            name = numbers.get(obstacle.name, obstacle.name)
+            _label(canvas, visible(eye, solids, np.array((x, y, upper[2] + 0.15))), name, tone)
+    if mission.target is not None:
+        x, y, z = mission.target.position
+        words = f"target {math.dist(here, (x, y, z)):.1f} m"
+        _label(canvas, visible(eye, NOTHING, np.array((x, y, z + 0.4))), words, Tone.TARGET)
+
+
+def _label(canvas: Canvas, dot: tuple[float, float] | None, words: str, tone: Tone) -> None:
+    if dot is not None:
+        canvas.letters(int(dot[0] / 2) - len(words) // 2, int(dot[1] / 4), words, tone)
 
 
 def _sights(canvas: Canvas, frame: Frame, eye: Camera) -> None:

@@ -71,7 +71,7 @@ def draw(canvas: Canvas, camera: Camera, solids: Solids, scene: list[Lines]) -> 
 
 
 def visible(camera: Camera, solids: Solids, point: Floats) -> tuple[float, float] | None:
-    """Return the dot of a point, or None where it is not seen."""
+    """Return the dot of a point, or None where it is not in the picture or is hidden, by whatever can hide it."""
     x, y = camera.dots(point)
     inside = 0 <= x < camera.width and 0 <= y < camera.height
     if not inside or solids.hide(camera.place, point[None])[0]:

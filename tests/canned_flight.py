@@ -148,7 +148,8 @@ class CannedFlight:
             ),
             progress=MissionProgress(
                 t=t - 0.02, stage=b"on the way" if self.engaged else b"on the ground", leg=int(self.engaged), legs=5,
-                target_distance=8.0, clearance=1.2,
+                target_distance=math.dist(self._p[:3], self._points[-1]),
+                clearance=self._world.nearest((self._p[0], self._p[1], self._p[2])).distance,
             ),
             events=self._events(t),
             answers=(),

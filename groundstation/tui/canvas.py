@@ -65,17 +65,24 @@ class Canvas:
             y: Dots from the top, shape (n,).
             tone: Of their cells: one, or one a dot.
         """
-        across, down = np.atleast_1d(np.asarray(x, dtype=float)), np.atleast_1d(np.asarray(y, dtype=float))
-        inside = (across > -0.5) & (across < self.width - 0.5) & (down > -0.5) & (down < self.height - 0.5)
-        columns, rows = np.rint(across[inside]).astype(np.intp), np.rint(down[inside]).astype(np.intp)
+        columns, rows, inside = self._cells(x, y)
         self._dots[rows, columns] = 1
         self._tones[rows >> 2, columns >> 1] = tone[inside] if isinstance(tone, np.ndarray) else tone
 
     def clear(self, x: ArrayLike, y: ArrayLike) -> None:
         """Take dots away, so that what is drawn next stands free; those outside or not finite are left out."""
-        across, down = np.atleast_1d(np.asarray(x, dtype=float)), np.atleast_1d(np.asarray(y, dtype=float))
-        inside = (across > -0.5) & (across < self.width - 0.5) & (down > -0.5) & (down < self.height - 0.5)
-        self._dots[np.rint(down[inside]).astype(np.intp), np.rint(across[inside]).astype(np.intp)] = 0
+        columns, rows, _ = self._cells(x, y)
+        self._dots[rows, columns] = 0
+
+    def _cells(
+        self, x: ArrayLike, y: ArrayLike
+    ) -> tuple[NDArray[np.intp], NDArray[np.intp], NDArray[np.bool_]]:
+        """Return columns and rows of the dots that are within, and which those are."""
+        # Half a dot is always rounded up: rounded to even numbers, every second dot of a line would be missing.
+        across = np.floor(np.atleast_1d(np.asarray(x, dtype=float)) + 0.5)
+        down = np.floor(np.atleast_1d(np.asarray(y, dtype=float)) + 0.5)
+        inside = (across >= 0.0) & (across < self.width) & (down >= 0.0) & (down < self.height)
+        return across[inside].astype(np.intp), down[inside].astype(np.intp), inside
 
     def line(self, x: ArrayLike, y: ArrayLike, tone: Tone, gap: int = 1) -> None:
         """Draw straight lines from point to point.
@@ -139,8 +146,8 @@ def dots_of(x: Floats, y: Floats, size: tuple[int, int], gap: int | NDArray[np.i
     """
     # What is too far away to be reckoned with is not finite either; NaN is not less than anything.
     finite = ((abs(x) < _FAR) & (abs(y) < _FAR)).all(axis=1)
-    starts = np.where(finite, x[:, 0], 0.0), np.where(finite, y[:, 0], 0.0)
-    ways = np.where(finite, x[:, 1] - x[:, 0], 0.0), np.where(finite, y[:, 1] - y[:, 0], 0.0)
+    ends = [np.where(finite[:, None], axis, 0.0) for axis in (x, y)]
+    starts, ways = [axis[:, 0] for axis in ends], [axis[:, 1] - axis[:, 0] for axis in ends]
     begin, end = np.zeros(len(x)), np.where(finite, 1.0, -1.0)
     for start, way, edge in zip(starts, ways, size, strict=True):
         still = abs(way) < 1e-9

@@ -27,6 +27,7 @@ from groundstation.run_folder import run_folder
 
 ROOT = Path(__file__).resolve().parents[1]
 SETPOINT_ID = 84
+_FRAME = b"\x1b[?2026h"
 ROLES = {
     "groundstation.recording.recorder": "recorder",
     "groundstation.vehicle.link": "link",
@@ -130,6 +131,7 @@ class Program:
     Attributes:
         screen: The newest of what it wrote to the terminal.
         written: How much it wrote, bytes.
+        frames: How many frames it painted since `count_frames`.
     """
 
     def __init__(
@@ -148,7 +150,7 @@ class Program:
         self._closed = False
         self._reader = threading.Thread(target=self._drain, daemon=True)
         self.screen = bytearray()
-        self.written = 0
+        self.written = self.frames = 0
         self._reader.start()
         self.bus = self._join()
         self.console = Console(self.bus, "bench")
@@ -156,6 +158,10 @@ class Program:
     def type(self, keys: str) -> None:
         """Type keys into the terminal."""
         os.write(self._controller, keys.encode())
+
+    def count_frames(self) -> None:
+        """Say that this terminal takes whole frames (mode 2026), so that each is marked."""
+        self.type("\x1b[?2026;2$y")
 
     def until(self, condition, within_s: float, what: str) -> Snapshot:
         """Wait until a snapshot meets a condition.
@@ -234,6 +240,7 @@ class Program:
             try:
                 news = os.read(self._controller, 65536)
                 self.written += len(news)
+                self.frames += news.count(_FRAME)
                 self.screen += news
             except OSError:
                 # Nobody has the terminal open now; somebody may again.

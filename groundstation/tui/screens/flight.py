@@ -92,6 +92,7 @@ class FlightScreen(Screen[None]):
         self._map = Overview(id="map")
         self._pages = Pages(self.show_page, id="pages")
         self._instruments: list[Instrument] = []
+        self._shown: list[Instrument] = []
         self._latest: Frame | None = None
 
     def compose(self) -> ComposeResult:
@@ -127,9 +128,9 @@ class FlightScreen(Screen[None]):
     def show(self, frame: Frame) -> None:
         """Hand a frame to the instruments that are to be seen."""
         self._latest = frame
-        for instrument in self._instruments:
-            if _seen(instrument):
-                instrument.show(frame)
+        self._shown = self._shown or [instrument for instrument in self._instruments if _seen(instrument)]
+        for instrument in self._shown:
+            instrument.show(frame)
 
     def action_step(self, axis: int, direction: int) -> None:
         """Move the on-screen stick by a step."""
@@ -155,8 +156,17 @@ class FlightScreen(Screen[None]):
                 widget.set_class(isinstance(widget, Widget) and widget is not self, "-here")
         # The map's altitude stays beside it.
         self.query_one("#altitude").set_class(name == "map", "-here")
+        self.call_after_refresh(self._look_again)
+
+    def on_resize(self) -> None:
+        """The terminal has another size."""
+        self.call_after_refresh(self._look_again)
+
+    def _look_again(self) -> None:
+        """Find out anew which instruments have a place on the screen."""
+        self._shown = []
         if self._latest is not None:
-            self.call_after_refresh(self.show, self._latest)
+            self.show(self._latest)
 
     def commands(self) -> Iterator[SystemCommand]:
         """List what this screen can do, for the palette."""

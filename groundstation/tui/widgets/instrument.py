@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-from typing import ClassVar
+from typing import ClassVar, Self
 
 from rich.segment import Segment
 from rich.style import Style
 from textual import events
-from textual.geometry import Region
+from textual.geometry import Region, Size
 from textual.strip import Strip
 from textual.widget import Widget
 
@@ -39,11 +39,16 @@ class Instrument(Widget, can_focus=False):
         self._frame: Frame | None = None
         self._styles: dict[Tone, Style] = {}
         self._turn = 0
+        self._composed: dict[tuple[Region, Size], list[Strip]] = {}
         self.title = str(self.BORDER_TITLE or "")
 
     def draw(self, frame: Frame, width: int, height: int) -> list[Row]:
         """Return the rows of the content area, at most `height` of `width` cells each."""
         raise NotImplementedError
+
+    def every(self) -> int:
+        """Return every how many frames it is drawn now."""
+        return self.EVERY
 
     def data_age(self, frame: Frame) -> float:
         """Return the age of what it shows, s; infinite where nothing has come yet, NaN where it has no one age."""
@@ -60,7 +65,7 @@ class Instrument(Widget, can_focus=False):
         self._frame = frame
         self._turn += 1
         # Before it is mounted, Textual forgets what is asked to be painted.
-        if self.is_mounted and self.size and (not self._rows or self._turn % self.EVERY == 0):
+        if self.is_mounted and self.size and (not self._rows or self._turn % self.every() == 0):
             self._paint(frame)
 
     def _paint(self, frame: Frame) -> None:
@@ -92,6 +97,20 @@ class Instrument(Widget, can_focus=False):
         if title != (self.border_title or ""):
             self.border_title = title
 
+    def render_lines(self, crop: Region) -> list[Strip]:
+        """Return a part as it was composed last if nothing has changed since: others change in every frame."""
+        asked = (crop, self.size)
+        if asked not in self._composed:
+            self._composed[asked] = super().render_lines(crop)
+        return self._composed[asked]
+
+    def refresh(
+        self, *regions: Region, repaint: bool = True, layout: bool = False, recompose: bool = False
+    ) -> Self:
+        """Forget what was composed, and have it composed anew."""
+        self._composed = {}
+        return super().refresh(*regions, repaint=repaint, layout=layout, recompose=recompose)
+
     def render_line(self, y: int) -> Strip:
         """Return one painted line."""
         width = self.size.width
@@ -110,6 +129,7 @@ class Instrument(Widget, can_focus=False):
         """Forget the styles when the style sheet, a class or the theme has changed."""
         super().notify_style_update()
         self._styles = {}
+        self._composed = {}
 
     def on_resize(self, _event: events.Resize) -> None:
         """Draw the last frame anew for the new size."""

@@ -349,3 +349,27 @@ async def test_a_viewer_that_cannot_show_it_says_why(tmp_path):
                 break
         else:
             pytest.fail(f"not told: {scene.notices()}")
+
+
+async def test_the_hand_is_coupled_from_preflight_and_alarms_are_taken_as_known_there():
+    async with cockpit(AIR) as scene:
+        await scene.press("f7", "enter", "e")
+        assert scene.reader.commands == [CommandKind.ENGAGE]
+        assert any("wrong" in words for words in scene.notices())
+        await scene.press("escape", "l", "f7")
+        scene.reader.shown.status.in_air = 0
+        await scene.see()
+        await scene.press("e")
+        assert scene.notices()[-1] == "Engage: take off first."
+
+
+async def test_the_help_has_every_key_that_is_bound():
+    async with cockpit(size=(120, 200)) as scene:
+        await scene.press("f1")
+        await scene.pilot.pause(0.1)
+        picture = scene.app.export_screenshot().replace("&#160;", " ")
+        for binding in (*scene.app.BINDINGS, *FlightScreen.BINDINGS):
+            if binding.action not in {"centre", "quit", "app.quit"} and "release(" not in binding.action:
+                words = binding.description.removeprefix("Stick ").removesuffix(" cue on/off").lower()
+                assert words in picture.lower(), binding
+        assert "Release the hand." in picture

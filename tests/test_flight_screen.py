@@ -7,8 +7,9 @@ import re
 import time
 
 import pytest
+from pymavlink.dialects.v20 import common as mavlink
 
-from bench.rig import Program, hovers
+from bench.rig import Hand, Program, Tap, hovers, vehicle
 from groundstation.messages import COMMAND, CommandKind, FlightMode, Phase
 from groundstation.vehicle.failsafes import FAILSAFES
 
@@ -99,3 +100,38 @@ def test_without_a_vehicle_the_choice_comes_first_and_enter_flies(tmp_path):
         assert program.process.wait(30) == 0
     finally:
         program.close()
+
+
+def test_a_real_vehicle_is_typed_for_and_another_that_takes_over_is_told_and_not_fought(tmp_path):
+    tap, hand = Tap(), Hand(str(tmp_path / "hand.sock"))
+    with vehicle(tap.vehicle_port):
+        program = Program(
+            "--connect", f"udpout://127.0.0.1:{tap.program_port}", "--device", f"virtual:{tmp_path / 'hand.sock'}",
+            "--mission", "hover", "--logs", str(tmp_path), columns=80, rows=24,
+        )  # fmt: skip
+        try:
+            program.until(
+                lambda view: view.status and view.status.health & 64 and not view.status.unsafe, 40, "ready"
+            )
+            shows(program, "■ REAL")
+            press(program, "Ay", lambda view: view.status.armed, "armed")
+            press(program, "ty", lambda view: view.status.in_air, "in the air")
+            program.until(hovers, 30, "hovering")
+            press(program, "e", lambda view: b"Engage the REAL" in program.screen, "asked")
+            assert program.console.snapshot().pilot.phase == Phase.DISENGAGED
+            program.type("REAL\r")
+            program.until(lambda view: view.pilot.phase == Phase.ENGAGED, 20, "engaged")
+            program.screen.clear()
+            other = mavlink.MAVLink(None, srcSystem=254, srcComponent=190)
+            hold = other.command_long_encode(1, 1, 176, 0, 1 | 128, 4, 3, 0, 0, 0, 0)
+            tap.inject(bytes(hold.pack(other)))
+            shows(program, "by another", 5.0)
+            program.until(lambda view: view.pilot.phase == Phase.DISENGAGED, 1, "uncoupled")
+            tap.setpoints.clear()
+            time.sleep(1.5)
+            assert tap.setpoints == []
+            assert (tmp_path / "connections.json").exists()
+        finally:
+            program.close()
+            hand.close()
+            tap.close()

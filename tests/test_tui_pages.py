@@ -2,22 +2,26 @@
 
 from __future__ import annotations
 
+import io
 from dataclasses import replace
 
 import msgspec
 import pytest
 from canned_flight import canned_run
 from cockpit import AIR, ENGAGED, Cockpit, cockpit
+from rich.console import Console
 from textual.command import CommandPalette
 from textual.widgets import Input
 
+from groundstation.config import Buttons
 from groundstation.messages import CommandKind, FlightMode, Parameter, Phase
 from groundstation.tui.acts import URGENT
+from groundstation.tui.app import FlightApp
 from groundstation.tui.lines import Lines
 from groundstation.tui.pages import PAGES
 from groundstation.tui.screens.dialog import Confirm, Typed
 from groundstation.tui.screens.flight import FlightScreen
-from groundstation.tui.screens.help import Help
+from groundstation.tui.screens.help import Help, help_table
 from groundstation.tui.screens.page import Page
 from groundstation.vehicle.failsafes import FAILSAFES
 from sim.autopilot.parameters import SPECS
@@ -349,3 +353,26 @@ async def test_a_viewer_that_cannot_show_it_says_why(tmp_path):
                 break
         else:
             pytest.fail(f"not told: {scene.notices()}")
+
+
+async def test_the_hand_is_coupled_from_preflight_and_alarms_are_taken_as_known_there():
+    async with cockpit(AIR) as scene:
+        await scene.press("f7", "enter", "e")
+        assert scene.reader.commands == [CommandKind.ENGAGE]
+        assert any("wrong" in words for words in scene.notices())
+        await scene.press("escape", "l", "f7")
+        scene.reader.shown.status.in_air = 0
+        await scene.see()
+        await scene.press("e")
+        assert scene.notices()[-1] == "Engage: take off first."
+
+
+def test_the_help_has_every_key_that_is_bound():
+    console = Console(width=100, record=True, file=io.StringIO())
+    console.print(help_table(Buttons()))
+    written = console.export_text().lower()
+    for binding in (*FlightApp.BINDINGS, *FlightScreen.BINDINGS):
+        if binding.action not in {"centre", "quit", "app.quit"} and "release(" not in binding.action:
+            words = binding.description.removeprefix("Stick ").removesuffix(" cue on/off").lower()
+            assert words in written, binding
+    assert "release the hand." in written

@@ -11,6 +11,8 @@ from groundstation.messages import CommandAnswer, CommandKind, Event, Severity
 
 # Longer than a vehicle's mode change takes to be confirmed by its 1 Hz heartbeat.
 ANSWER_S = 5.0
+# All parameters of a vehicle, a thousand or two, take their time through a radio.
+_PATIENCE_S = {CommandKind.PARAMETERS: 60.0}
 _SAME_S = 1.0
 _SEVERITIES = frozenset(Severity)
 _KINDS = frozenset(CommandKind)
@@ -45,9 +47,10 @@ class Answers:
             if self._open.pop(answer.number, None) and not answer.ok
         ]
         for number, (kind, t) in list(self._open.items()):
-            if snapshot.t - t > ANSWER_S:
+            patience = _PATIENCE_S.get(kind, ANSWER_S)
+            if snapshot.t - t > patience:
                 del self._open[number]
-                text = f"{_name(kind)}: no answer in {ANSWER_S:.0f} s; check that the link and the pilot run."
+                text = f"{_name(kind)}: no answer in {patience:.0f} s; check that the link and the pilot run."
                 news.append(Note(snapshot.t, Severity.ALARM, "screen", text))
         self.notes.extend(news)
         return news
@@ -83,4 +86,4 @@ def _refusal(answer: CommandAnswer) -> str:
 
 
 def _name(kind: CommandKind) -> str:
-    return kind.name.capitalize()
+    return kind.name.capitalize().replace("_", " ")

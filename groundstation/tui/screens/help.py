@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import ClassVar
 
 from rich.table import Table
@@ -18,8 +19,12 @@ from groundstation.tui.buttons import button_map
 from groundstation.tui.choices import CHOICES, CUES
 from groundstation.tui.pages import PAGES
 from groundstation.tui.screens.dialog import Dialog
-from groundstation.tui.screens.flight import STEPS
+from groundstation.tui.screens.flight import STEPS, FlightScreen
 from groundstation.tui.theme import STYLES, Tone
+
+# Bindings that come from tables of their own, or are explained in words.
+_TABLED = ("app.act", "app.choose", "app.help", "app.quit", "step", "centre")
+_WRITTEN = {"plus": "+", "minus": "−", "shift+tab": "⇧Tab", "tab": "Tab", "enter": "Enter"}
 
 
 class Help(Dialog):
@@ -75,6 +80,8 @@ def help_table(buttons: Buttons) -> Table:
         table.add_row(str(number), "button", words[0].upper() + words[1:] + ".")
     _section(table, "screen", "")
     table.add_row("? F1", "help", "Esc goes back.")
+    for key, words in _other_keys():
+        table.add_row(key, words, "")
     table.add_row("^p", "palette", "All acts by name.")
     table.add_row("q", "quit", "Asks first in the air; the vehicle holds.")
     _section(table, "signs", "")
@@ -89,6 +96,15 @@ def help_table(buttons: Buttons) -> Table:
     table.add_row(Text("◎", STYLES[Tone.TARGET]), "target", "Where the mission leads.")
     table.add_row("+ −", "axes", "Positive is forward, left, up, turning left.")
     return table
+
+
+def _other_keys() -> Iterator[tuple[str, str]]:
+    """Yield the keys of the flight screen that no table has, with what they do."""
+    for binding in FlightScreen.BINDINGS:
+        assert isinstance(binding, Binding)
+        if not binding.action.startswith(_TABLED):
+            key = binding.key.partition(",")[0]
+            yield _WRITTEN.get(key, key), binding.description
 
 
 def _section(table: Table, title: str, words: str) -> None:

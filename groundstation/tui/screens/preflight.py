@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import ClassVar
 
+from textual.binding import Binding, BindingType
 from textual.widget import Widget
 
 from groundstation.messages import Severity
@@ -30,7 +31,8 @@ class Preflight(Page):
     """The checks."""
 
     NAME = "preflight"
-    OWN_KEYS: ClassVar = (("e", "Engage", "app.act('engage')"),)
+    OWN_KEYS: ClassVar = (("e", "Engage", "screen.letter('e', 'engage')"),)
+    BINDINGS: ClassVar[list[BindingType]] = [Binding("e,E", "letter('e', 'engage')", "Engage", show=False)]
 
     def parts(self) -> Iterator[Widget]:
         """Yield the list of checks."""

@@ -85,12 +85,7 @@ def _publish(bus: Bus, recorder: int, rates: tuple[int, int, int], seconds: floa
         if not wall and now - began > _WARM_S:
             used, wall = _cpu(recorder), now
         row = tuple(noise[tick % len(noise)].tolist())
-        handles.send(
-            Handle(
-                t=now, position=row[:3], velocity=row[3:6], force=row[6:9], yaw=row[9], device_t=now - 1e-4 * row[10],
-                homed=1, present=1,
-            )  # fmt: skip
-        )
+        handles.send(_handle(now, row))
         counts[0] += 1
         if tick % (1000 // rates[1]) == 0:
             pilots.send(_pilot(now, row))
@@ -99,11 +94,20 @@ def _publish(bus: Bus, recorder: int, rates: tuple[int, int, int], seconds: floa
             states.send(
                 VehicleState(t=now, position=row[:4], velocity=row[4:8], roll=row[8], pitch=row[9], valid=1)
             )
-            inputs.send(TickInputs(t=now, tick=tick + 1, dt=0.001, state_t=now, fitted=2, read=1, homed=1, present=1))
+            inputs.send(
+                TickInputs(t=now, tick=tick + 1, dt=0.001, state_t=now, fitted=2, read=1, homed=1, present=1)
+            )
             counts[2] += 1
         tick += 1
         time.sleep(max(0.0, began + tick * 1e-3 - time.monotonic()))
     return counts, 100.0 * (_cpu(recorder) - used) / (time.monotonic() - wall)
+
+
+def _handle(t: float, row: tuple[float, ...]) -> Handle:
+    return Handle(
+        t=t, position=row[:3], velocity=row[3:6], force=row[6:9], yaw=row[9], device_t=t - 1e-4 * row[10],
+        homed=1, present=1,
+    )  # fmt: skip
 
 
 def _pilot(t: float, row: tuple[float, ...]) -> PilotState:

@@ -199,7 +199,7 @@ def properties_of(chunks: list[Chunk]) -> dict[str, Any]:
 
 def _seconds(chunk: Chunk) -> Numbers:
     """Return the times of a chunk's rows, s, on the timeline."""
-    return _nanoseconds(chunk) * 1e-9
+    return np.asarray(_nanoseconds(chunk) * 1e-9, dtype=np.float64)
 
 
 def _nanoseconds(chunk: Chunk) -> npt.NDArray[np.int64]:

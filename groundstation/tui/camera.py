@@ -89,7 +89,7 @@ def before(segments: Floats) -> tuple[Floats, NDArray[np.bool_]]:
     share = (NEAR_M - depth[:, 0]) / np.where(abs(way) < 1e-12, 1.0, way)
     crossing = segments[:, 0] + share[:, None] * (segments[:, 1] - segments[:, 0])
     cut = np.where(ahead[:, :, None], segments, crossing[:, None, :])
-    return cut, ahead.any(axis=1)
+    return cut, ahead[:, 0] | ahead[:, 1]
 
 
 @dataclass(frozen=True, slots=True)
@@ -124,7 +124,8 @@ class Solids:
         outward = np.where(way > 0.0, share, np.inf)
         enters = np.maximum.reduceat(inward, self.firsts, axis=1)
         leaves = np.minimum.reduceat(outward, self.firsts, axis=1)
-        return ((enters > 0.0) & (enters < _SKIN) & (enters < leaves)).any(axis=1)
+        between = (enters > 0.0) & (enters < _SKIN) & (enters < leaves)
+        return np.logical_or.reduce(between, axis=1)
 
 
 NOTHING = Solids(np.zeros((0, 3)), np.zeros(0), np.zeros(0, dtype=np.intp))

@@ -145,7 +145,8 @@ def dots_of(x: Floats, y: Floats, size: tuple[int, int], gap: int | NDArray[np.i
         gap: Only every so many dots, of all lines or of each.
     """
     # What is too far away to be reckoned with is not finite either; NaN is not less than anything.
-    finite = ((abs(x) < _FAR) & (abs(y) < _FAR)).all(axis=1)
+    near_ends = (abs(x) < _FAR) & (abs(y) < _FAR)
+    finite = near_ends[:, 0] & near_ends[:, 1]
     ends = [np.where(finite[:, None], axis, 0.0) for axis in (x, y)]
     starts, ways = [axis[:, 0] for axis in ends], [axis[:, 1] - axis[:, 0] for axis in ends]
     begin, end = np.zeros(len(x)), np.where(finite, 1.0, -1.0)

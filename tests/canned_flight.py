@@ -271,11 +271,13 @@ class CannedFollower:
     def __init__(self, run: Run) -> None:
         assert run.mission is not None
         self.director = Director(run.mission, World(run.mission.obstacle), radius=0.2)
+        self._seen_t = 0.0
 
     def look(self, view: Snapshot) -> None:
         """Take note of a snapshot."""
-        assert view.vehicle is not None
-        assert view.status is not None
+        if view.vehicle is None or view.status is None or view.vehicle.t <= self._seen_t:
+            return
+        self._seen_t = view.vehicle.t
         x, y, z, _ = view.vehicle.position
         flags = {"in_air": bool(view.status.in_air), "armed": bool(view.status.armed)}
         self.director.vehicle(view.vehicle.t, (x, y, z), **flags)

@@ -124,7 +124,8 @@ class Solids:
         outward = np.where(way > 0.0, share, np.inf)
         enters = np.maximum.reduceat(inward, self.firsts, axis=1)
         leaves = np.minimum.reduceat(outward, self.firsts, axis=1)
-        return np.logical_or.reduce((enters > 0.0) & (enters < _SKIN) & (enters < leaves), axis=1)
+        between = (enters > 0.0) & (enters < _SKIN) & (enters < leaves)
+        return np.logical_or.reduce(between, axis=1)
 
 
 NOTHING = Solids(np.zeros((0, 3)), np.zeros(0), np.zeros(0, dtype=np.intp))

@@ -5,6 +5,7 @@ NumPy all through: a whole frame is a few array operations, and rendering a line
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -24,6 +25,8 @@ _SPACE = ord(" ")
 _TONES = tuple(Tone)
 # Further away than this nothing is drawn, dots.
 _FAR = 1e9
+# Of so few points with lines that are so short the dots are found one line at a time, dots.
+_FEW, _SHORT = 8, 400.0
 # Longer lines are nobody's drawing, dots.
 _LONGEST = 4096
 
@@ -94,6 +97,9 @@ class Canvas:
             gap: Only every so many dots, for dotted lines.
         """
         across, down = np.asarray(x, dtype=float), np.asarray(y, dtype=float)
+        if len(across) <= _FEW and (short := _short(across.tolist(), down.tolist(), gap)):
+            self.plot(short[0], short[1], tone)
+            return
         ends = [np.stack([axis[:-1], axis[1:]], axis=1) for axis in (across, down)]
         dots = dots_of(ends[0], ends[1], (self.width, self.height), gap)
         self.plot(dots.x, dots.y, tone)
@@ -116,8 +122,10 @@ class Canvas:
         codes = np.where(
             written, self._letters, np.where(bits == 0, _SPACE, _BRAILLE + bits.astype(np.uint32))
         )
-        tones = np.where(codes == _SPACE, 0, np.where(written, self._letter_tones, self._tones))
-        return _runs(codes, tones)
+        tones = np.where(written, self._letter_tones, self._tones)
+        # A space looks the same in every tone: in that of what stands before it there are fewer runs to compose.
+        last = np.maximum.accumulate(np.where(codes == _SPACE, 0, np.arange(self.columns)), axis=1)
+        return _runs(codes, np.take_along_axis(tones, last, axis=1))
 
 
 class Dots(NamedTuple):
@@ -135,6 +143,23 @@ class Dots(NamedTuple):
     line: NDArray[np.intp]
 
 
+def _short(x: list[float], y: list[float], gap: int) -> tuple[Floats, Floats] | None:
+    """Return the dots of a few short lines, or None where one is long: for these a loop is several times quicker."""
+    across, down = [np.zeros(0)], [np.zeros(0)]
+    for index in range(len(x) - 1):
+        x0, y0, x1, y1 = x[index], y[index], x[index + 1], y[index + 1]
+        length = max(abs(x1 - x0), abs(y1 - y0))
+        if not length <= _SHORT:
+            if math.isfinite(length):
+                return None
+            continue
+        steps = max(round(length), 1)
+        share = np.arange(0, steps + 1, gap) / steps
+        across.append(x0 + (x1 - x0) * share)
+        down.append(y0 + (y1 - y0) * share)
+    return np.concatenate(across), np.concatenate(down)
+
+
 def dots_of(x: Floats, y: Floats, size: tuple[int, int], gap: int | NDArray[np.intp] = 1) -> Dots:
     """Return the dots of straight lines, as far as they are within a picture (Liang and Barsky, 1984).
 
@@ -145,7 +170,8 @@ def dots_of(x: Floats, y: Floats, size: tuple[int, int], gap: int | NDArray[np.i
         gap: Only every so many dots, of all lines or of each.
     """
     # What is too far away to be reckoned with is not finite either; NaN is not less than anything.
-    finite = np.logical_and.reduce((abs(x) < _FAR) & (abs(y) < _FAR), axis=1)
+    near_ends = (abs(x) < _FAR) & (abs(y) < _FAR)
+    finite = near_ends[:, 0] & near_ends[:, 1]
     ends = [np.where(finite[:, None], axis, 0.0) for axis in (x, y)]
     starts, ways = [axis[:, 0] for axis in ends], [axis[:, 1] - axis[:, 0] for axis in ends]
     begin, end = np.zeros(len(x)), np.where(finite, 1.0, -1.0)

@@ -81,8 +81,8 @@ def visible(camera: Camera, solids: Solids, point: Floats) -> tuple[float, float
 
 def _hidden(camera: Camera, solids: Solids, segments: Floats, dots: Dots) -> NDArray[np.bool_]:
     """Say which dots are behind a body; of neighbours only one is asked about, the others are as it is."""
-    x, y, share, line = dots
-    asked = Dots(x[::_ASKED], y[::_ASKED], share[::_ASKED], line[::_ASKED])
+    few = slice(None, None, _ASKED)
+    asked = Dots(dots.x[few], dots.y[few], dots.share[few], dots.line[few])
     hidden = solids.hide(camera.place, _places(camera, segments, asked))
     return np.repeat(hidden, _ASKED)[: len(dots.x)]
 

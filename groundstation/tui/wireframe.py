@@ -170,7 +170,7 @@ def ground(eye: tuple[float, float, float], reach: float) -> Floats:
     step = next((step for step in (1.0, 2.0, 5.0, 10.0, 20.0, 50.0) if 10 * step >= reach), 100.0)
     middle = [round(value / step) * step for value in eye[:2]]
     count = math.floor(reach / step)
-    ticks = np.arange(-count, count + 1) * step
+    ticks: Floats = np.arange(-count, count + 1, dtype=np.float64) * step
     across, along = (axis.ravel() for axis in np.meshgrid(ticks, ticks[:-1]))
     flat = np.zeros_like(across)
     starts = np.stack([across, along, flat], axis=1)

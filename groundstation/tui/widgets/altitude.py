@@ -20,6 +20,7 @@ class Altitude(Instrument):
     """A column filled to the vehicle's altitude, with marks beside it."""
 
     BORDER_TITLE = "alt"
+    EVERY = 3
     STALE_S = 0.5
 
     def __init__(self, *, id: str | None = None) -> None:  # noqa: A002 - Textual's own name

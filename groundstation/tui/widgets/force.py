@@ -23,7 +23,7 @@ class Force(Instrument):
     """Signed bars, to the right is forward, left, up, and the cues; in a low pane the total and the cues that act."""
 
     BORDER_TITLE = "force on the hand"
-    EVERY = 2
+    EVERY = 3
     STALE_S = 0.2
 
     def data_age(self, frame: Frame) -> float:

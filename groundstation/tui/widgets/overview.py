@@ -104,7 +104,7 @@ class Overview(Instrument):
         event.stop()
 
     def every(self) -> int:
-        """Draw a flat map in every frame; in the other views nearly every line changes, and fewer are smooth."""
+        """Draw a flat map in every frame, the others in every second: there nearly every line changes."""
         return self.EVERY if self.sight.flat else _INSIDE_EVERY
 
     def data_age(self, frame: Frame) -> float:

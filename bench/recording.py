@@ -23,9 +23,11 @@ from groundstation.messages import (
     HANDLE,
     HEARTBEAT,
     PILOT_STATE,
+    TICK_INPUTS,
     VEHICLE_STATE,
     Handle,
     PilotState,
+    TickInputs,
     VehicleState,
 )
 from groundstation.recording import schema
@@ -73,6 +75,7 @@ def _measured(load: str, seconds: float) -> tuple[float, float, int, int]:
 def _publish(bus: Bus, recorder: int, rates: tuple[int, int, int], seconds: float) -> tuple[list[int], float]:
     """Publish for a while; return how much, and the recorder's share of a core, %, once it has warmed up."""
     handles, pilots, states = (bus.publisher(topic) for topic in (HANDLE, PILOT_STATE, VEHICLE_STATE))
+    inputs = bus.publisher(TICK_INPUTS)
     noise = np.random.default_rng(0).standard_normal((997, 64))
     counts = [0, 0, 0]
     began = time.monotonic()
@@ -82,8 +85,18 @@ def _publish(bus: Bus, recorder: int, rates: tuple[int, int, int], seconds: floa
         if not wall and now - began > _WARM_S:
             used, wall = _cpu(recorder), now
         row = tuple(noise[tick % len(noise)].tolist())
+        sampled = now - 1e-4 * row[10]
         handles.send(
-            Handle(t=now, position=row[:3], velocity=row[3:6], force=row[6:9], yaw=row[9], homed=1, present=1)
+            Handle(
+                t=now,
+                position=row[:3],
+                velocity=row[3:6],
+                force=row[6:9],
+                yaw=row[9],
+                device_t=sampled,
+                homed=1,
+                present=1,
+            )
         )
         counts[0] += 1
         if tick % (1000 // rates[1]) == 0:
@@ -92,6 +105,9 @@ def _publish(bus: Bus, recorder: int, rates: tuple[int, int, int], seconds: floa
         if tick % (1000 // rates[2]) == 0:
             states.send(
                 VehicleState(t=now, position=row[:4], velocity=row[4:8], roll=row[8], pitch=row[9], valid=1)
+            )
+            inputs.send(
+                TickInputs(t=now, tick=tick + 1, dt=0.001, state_t=now, fitted=2, read=1, homed=1, present=1)
             )
             counts[2] += 1
         tick += 1

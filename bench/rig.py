@@ -16,6 +16,7 @@ import sys
 import tempfile
 import threading
 import time
+from collections.abc import Callable
 from pathlib import Path
 
 from drivers.stick import StickSender
@@ -27,6 +28,7 @@ from groundstation.run_folder import run_folder
 
 ROOT = Path(__file__).resolve().parents[1]
 SETPOINT_ID = 84
+_FRAME = b"\x1b[?2026h"
 ROLES = {
     "groundstation.recording.recorder": "recorder",
     "groundstation.vehicle.link": "link",
@@ -126,10 +128,21 @@ class Program:
         arguments: Its command line.
         columns, rows: Size of the terminal.
         under: Command that starts it, as `setpriv` does with fewer rights.
+        watch: Is given all that the program writes.
+
+    Attributes:
+        screen: The newest of what it wrote to the terminal.
+        written: How much it wrote, bytes.
+        frames: How many frames it painted since `count_frames`.
     """
 
     def __init__(
-        self, *arguments: str, columns: int = 200, rows: int = 60, under: tuple[str, ...] = ()
+        self,
+        *arguments: str,
+        columns: int = 200,
+        rows: int = 60,
+        under: tuple[str, ...] = (),
+        watch: Callable[[bytes], None] = lambda _: None,
     ) -> None:
         self.started = time.monotonic()
         controller, terminal = pty.openpty()
@@ -141,10 +154,10 @@ class Program:
         )  # fmt: skip
         os.close(terminal)
         self._controller = controller
-        self._closed = False
+        self._closed, self._watch = False, watch
         self._reader = threading.Thread(target=self._drain, daemon=True)
         self.screen = bytearray()
-        self.written = 0
+        self.written = self.frames = 0
         self._reader.start()
         self.bus = self._join()
         self.console = Console(self.bus, "bench")
@@ -152,6 +165,10 @@ class Program:
     def type(self, keys: str) -> None:
         """Type keys into the terminal."""
         os.write(self._controller, keys.encode())
+
+    def count_frames(self) -> None:
+        """Say that this terminal takes whole frames (mode 2026), so that each is marked."""
+        self.type("\x1b[?2026;2$y")
 
     def until(self, condition, within_s: float, what: str) -> Snapshot:
         """Wait until a snapshot meets a condition.
@@ -228,9 +245,11 @@ class Program:
             if not select.select([self._controller], [], [], 0.1)[0]:
                 continue
             try:
-                taken = os.read(self._controller, 65536)
-                self.screen += taken
-                self.written += len(taken)
+                news = os.read(self._controller, 65536)
+                self.written += len(news)
+                self.frames += news.count(_FRAME)
+                self.screen += news
+                self._watch(news)
             except OSError:
                 # Nobody has the terminal open now; somebody may again.
                 time.sleep(0.02)

@@ -1,18 +1,23 @@
 """What the screen costs while it flies: its share of a core at 200×60 and 30 Hz, and ticks the servo lost to it.
 
 The paper's mission on the simulated vehicle, in a pseudo-terminal that takes every byte at once; the stick is moved
-all the time, so that every instrument changes. Beside it, in the same run, the same flight without a screen.
+all the time, so that every instrument changes. Beside it, in the same run, the same flight without a screen. And a
+flight by an emulated Falcon, whose screen is stopped for a second: what leaves for the vehicle meanwhile.
 """
 
 from __future__ import annotations
 
+import math
 import os
+import signal
 import tempfile
 import time
 from collections.abc import Iterator
+from itertools import pairwise
 from pathlib import Path
+from typing import NamedTuple
 
-from bench.rig import Program
+from bench.rig import Hand, Program, Tap, vehicle
 from groundstation.console import Snapshot
 from groundstation.messages import Phase
 
@@ -20,38 +25,62 @@ BAR_SHARE = 30.0
 COLUMNS, ROWS = 200, 60
 # The longest that a flight without a screen stays engaged is some 30 s.
 LONG_S, SHORT_S = 20.0, 8.0
+FROZEN_S = 1.0
 _WARM_S = 3.0
 # Arrow keys: forward, left, back, right, and the centre.
 _MOVES = ("\x1b[A", "\x1b[D", "\x1b[B", "\x1b[C", " ")
-VIEWS = ("top", "side", "chase", "first person")
+VIEWS = ("above", "side", "chase", "first person")
 
 
-def on_screen(view: int, seconds: float) -> tuple[float, float, int, int]:
-    """Fly with the screen in one of its views.
+class Cost(NamedTuple):
+    """What a screen cost.
 
-    Args:
-        view: Number in `VIEWS`.
-        seconds: Measured.
-
-    Returns:
-        Share of a core, %; kilobytes a second to the terminal; ticks missed and run.
+    Attributes:
+        share: Of a core, %.
+        frames: Painted a second, Hz.
+        rate: To the terminal, kB/s.
+        missed: Ticks that the servo did not run, of `ticks`.
     """
+
+    share: float
+    frames: float
+    rate: float
+    missed: int
+    ticks: int
+
+
+class Second(NamedTuple):
+    """What left for the vehicle in a second.
+
+    Attributes:
+        setpoints: How many.
+        gap: The longest without one, s.
+        missed: Ticks that the servo did not run.
+        engaged: The hand was coupled at its end.
+    """
+
+    setpoints: int
+    gap: float
+    missed: int
+    engaged: bool
+
+
+def on_screen(view: int, seconds: float) -> Cost:
+    """Fly with the screen in one of its views, by its number in `VIEWS`, and measure for a while, s."""
     with tempfile.TemporaryDirectory() as logs:
         program = Program("--sim", "--mission", "paper", "--logs", logs, columns=COLUMNS, rows=ROWS)
         try:
             program.engage()
+            program.count_frames()
             program.type("v" * view)
             _steer(program, _WARM_S)
-            used, written, before = cpu_s(program.process.pid), program.written, program.console.snapshot()
-            began = time.monotonic()
+            used, written, frames = cpu_s(program.process.pid), program.written, program.frames
+            before, began = program.console.snapshot(), time.monotonic()
             _steer(program, seconds)
             wall = time.monotonic() - began
             share = 100.0 * (cpu_s(program.process.pid) - used) / wall
-            return (
-                share,
-                (program.written - written) / 1000.0 / wall,
-                *_ticks(before, program.console.snapshot()),
-            )
+            painted, kilobytes = (program.frames - frames) / wall, (program.written - written) / 1000.0 / wall
+            return Cost(share, painted, kilobytes, *_ticks(before, program.console.snapshot()))
         finally:
             program.close()
 
@@ -61,7 +90,9 @@ def without(seconds: float) -> tuple[int, int]:
     with tempfile.TemporaryDirectory() as logs:
         program = Program("--sim", "--headless", "--mission", "paper", "--logs", logs)
         try:
-            program.until(_engaged, 40.0, "engaged")
+            program.until(
+                lambda view: view.pilot and view.pilot.phase == Phase.ENGAGED and view.servo, 40, "engaged"
+            )
             before = program.console.snapshot()
             time.sleep(seconds)
             return _ticks(before, program.console.snapshot())
@@ -69,14 +100,54 @@ def without(seconds: float) -> tuple[int, int]:
             program.close()
 
 
-def _engaged(view: Snapshot) -> bool:
-    return view.servo is not None and view.pilot is not None and view.pilot.phase == Phase.ENGAGED
+def freeze() -> tuple[Second, Second]:
+    """Fly by an emulated Falcon; return the second before its screen is stopped, and the one in which it stands."""
+    with tempfile.TemporaryDirectory() as folder:
+        socket = str(Path(folder) / "hand.sock")
+        hand, tap = Hand(socket), Tap()
+        with vehicle(tap.vehicle_port, "--mission", "missions/free.toml"):
+            program = Program(
+                "--connect", f"udpout://127.0.0.1:{tap.program_port}", "--mission", "missions/free.toml",
+                "--device", f"emulated:falcon@{socket}", "--logs", str(Path(folder) / "logs"),
+            )  # fmt: skip
+            try:
+                program.until(lambda view: view.device and view.device.homed, 20, "the Falcon is homed")
+                program.engage()
+                _stir(hand, _WARM_S)
+                before = _second(program, tap, hand)
+                os.kill(program.process.pid, signal.SIGSTOP)
+                during = _second(program, tap, hand)
+                os.kill(program.process.pid, signal.SIGCONT)
+                return before, during
+            finally:
+                program.close()
+                hand.close()
+                tap.close()
 
 
 def cpu_s(pid: int) -> float:
     """Return the processor time that a process has used, s."""
     fields = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
     return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+
+def _second(program: Program, tap: Tap, hand: Hand) -> Second:
+    """Move the hand for as long as a screen stands still, and look at what left for the vehicle."""
+    before, began = program.console.snapshot(), time.monotonic()
+    _stir(hand, FROZEN_S)
+    ended, after = time.monotonic(), program.console.snapshot()
+    times = [began, *(t for t, _ in list(tap.setpoints) if began <= t <= ended), ended]
+    assert after.pilot is not None
+    gap = max(later - earlier for earlier, later in pairwise(times))
+    return Second(len(times) - 2, gap, _ticks(before, after)[0], after.pilot.phase == Phase.ENGAGED)
+
+
+def _stir(hand: Hand, seconds: float) -> None:
+    """Move the handle in circles for a while."""
+    began = time.monotonic()
+    while (elapsed := time.monotonic() - began) < seconds:
+        hand.put((0.02 * math.sin(4.0 * elapsed), 0.02 * math.cos(4.0 * elapsed), 0.0))
+        time.sleep(0.01)
 
 
 def _steer(program: Program, seconds: float) -> None:
@@ -99,12 +170,17 @@ def main(*, short: bool) -> Iterator[str]:
     """Yield the table."""
     seconds = SHORT_S if short else LONG_S
     for number, view in enumerate(VIEWS):
-        if short and number not in (0, len(VIEWS) - 1):
+        if short and number not in {0, len(VIEWS) - 1}:
             continue
-        share, rate, missed, ticks = on_screen(number, seconds)
+        cost = on_screen(number, seconds)
         yield (
-            f"{view:<13} {share:4.1f} % of a core (bar {BAR_SHARE:g} %), {rate:4.0f} kB/s; "
-            f"servo missed {missed} of {ticks} ticks ({100.0 * missed / max(ticks, 1):.2f} %)"
+            f"{view:<13} {cost.share:4.1f} % of a core (bar {BAR_SHARE:g} %) at {cost.frames:4.1f} Hz, "
+            f"{cost.rate:4.0f} kB/s; servo missed {cost.missed} of {cost.ticks} ticks"
         )
     missed, ticks = without(seconds)
-    yield f"without       servo missed {missed} of {ticks} ticks ({100.0 * missed / max(ticks, 1):.2f} %)"
+    yield f"without       servo missed {missed} of {ticks} ticks"
+    for name, second in zip(("turning", "stopped"), freeze(), strict=True):
+        yield (
+            f"screen {name}: {second.setpoints} setpoints in {FROZEN_S:g} s, longest gap {1e3 * second.gap:.0f} ms, "
+            f"servo missed {second.missed} ticks, hand {'coupled' if second.engaged else 'UNCOUPLED'}"
+        )

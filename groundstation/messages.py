@@ -167,6 +167,52 @@ class Handle(Record):
     )
 
 
+class TickInputs(Record):
+    """What the servo's ticks are made from, besides the hand in `Handle`, from this tick on: sent on a change.
+
+    With the records that it names, a recording can run every tick again (`groundstation replay --check`).
+
+    Attributes:
+        t: Of the tick.
+        tick: Its number, from 1.
+        dt: Since the tick before by the loop's pace, s.
+        state_t: `t` of the newest `VehicleState` that it knew; 0 before the first.
+        status_t, ranges_t: Likewise of `VehicleStatus` and `Ranges`.
+        command_t: Of the last `Command` that it took.
+        commands: Commands taken since the servo's start.
+        fitted: How often the controller has been fitted to a device since then.
+        read: The device was read; else the hand is what stands for none.
+        homed: As in `Handle`.
+        present: The device also took the force.
+    """
+
+    tick: int
+    dt: float
+    state_t: float
+    status_t: float
+    ranges_t: float
+    command_t: float
+    commands: int
+    fitted: int
+    read: int
+    homed: int
+    present: int
+    _fields_ = (
+        ("t", _F64),
+        ("tick", _U64),
+        ("dt", _F64),
+        ("state_t", _F64),
+        ("status_t", _F64),
+        ("ranges_t", _F64),
+        ("command_t", _F64),
+        ("commands", _U32),
+        ("fitted", _U32),
+        ("read", _U8),
+        ("homed", _U8),
+        ("present", _U8),
+    )
+
+
 class Setpoint(Record):
     """What the vehicle shall do: v_ref of equation (4) on its own axes, within limits; 50 Hz while active."""
 
@@ -533,6 +579,9 @@ class DeviceReport(Record):
     renders: bytes
     workspace: float
     force_limit: float
+    stiffness_limit: float
+    rate: float
+    axes: int
     present: int
     homed: int
     _fields_ = (
@@ -542,6 +591,9 @@ class DeviceReport(Record):
         ("renders", ctypes.c_char * 16),
         ("workspace", _F64),
         ("force_limit", _F64),
+        ("stiffness_limit", _F64),
+        ("rate", _F64),
+        ("axes", _U32),
         ("present", _U8),
         ("homed", _U8),
     )
@@ -595,20 +647,22 @@ class Topic(Generic[R]):
     wakes: bool = False
 
 
-HANDLE = Topic("handle", Handle, depth=4096)
+# A recorder that begins to listen a little after the pilot still gets its first ticks, and what they were made from.
+HANDLE = Topic("handle", Handle, depth=4096, history=1024)
+TICK_INPUTS = Topic("tick_inputs", TickInputs, depth=512, history=64)
 SETPOINT = Topic("setpoint", Setpoint, depth=256, wakes=True)
-PILOT_STATE = Topic("pilot_state", PilotState, depth=256)
-VEHICLE_STATE = Topic("vehicle_state", VehicleState, depth=1024)
+PILOT_STATE = Topic("pilot_state", PilotState, depth=256, history=64)
+VEHICLE_STATE = Topic("vehicle_state", VehicleState, depth=1024, history=128)
 ATTITUDE = Topic("attitude", Attitude, depth=1024)
-VEHICLE_STATUS = Topic("vehicle_status", VehicleStatus, depth=256)
+VEHICLE_STATUS = Topic("vehicle_status", VehicleStatus, depth=256, history=64)
 # A vehicle has a thousand or two, and they are read all at once.
 PARAMETER = Topic("parameter", Parameter, depth=4096, history=0)
-OBSTACLES = Topic("obstacles", Ranges)
+OBSTACLES = Topic("obstacles", Ranges, history=32)
 COMMAND = Topic("command", Command, history=0)
 COMMAND_ANSWER = Topic("command_answer", CommandAnswer, history=0)
 EVENT = Topic("event", Event, depth=256, history=32)
 SERVO_REPORT = Topic("servo_report", ServoReport)
-DEVICE_REPORT = Topic("device_report", DeviceReport)
+DEVICE_REPORT = Topic("device_report", DeviceReport, history=16)
 MISSION_PROGRESS = Topic("mission_progress", MissionProgress)
 HEARTBEAT = Topic("heartbeat", Heartbeat, history=0)
 

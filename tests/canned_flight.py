@@ -32,6 +32,7 @@ from groundstation.messages import (
 )
 from groundstation.pilot.choices import ALL_CUES
 from groundstation.run import Run
+from groundstation.training.director import Director
 from groundstation.training.mission import MISSIONS_FOLDER, load_mission
 from sim.environment.world import World
 
@@ -125,13 +126,15 @@ class CannedFlight:
         """Return all records as of now."""
         t = START + self.elapsed
         error = self._error()
+        ahead, left, _ = body_from_world((self._v[0], self._v[1], self._v[2]), self._p[3])
         return Snapshot(
             t=t,
             handle=self._handle(t, error),
             setpoint=self._setpoint(t, error),
             pilot=self._pilot(t, error),
             vehicle=VehicleState(
-                t=t - 0.012, position=tuple(self._p), velocity=tuple(self._v), boot_t=self.elapsed, valid=1
+                t=t - 0.012, position=tuple(self._p), velocity=tuple(self._v), roll=-0.1 * left, pitch=0.1 * ahead,
+                boot_t=self.elapsed, valid=1,
             ),
             ranges=None,
             status=self._status(t),
@@ -145,7 +148,8 @@ class CannedFlight:
             ),
             progress=MissionProgress(
                 t=t - 0.02, stage=b"on the way" if self.engaged else b"on the ground", leg=int(self.engaged), legs=5,
-                target_distance=8.0, clearance=1.2,
+                target_distance=math.dist(self._p[:3], self._points[-1]),
+                clearance=self._world.nearest((self._p[0], self._p[1], self._p[2])).distance,
             ),
             events=self._events(t),
             answers=(),
@@ -259,6 +263,25 @@ class CannedFlight:
             for at, severity, source, text in told
             if START + at <= t
         )
+
+
+class CannedFollower:
+    """Follows the mission of a canned flight as `groundstation.training.follower` does, without a bus."""
+
+    def __init__(self, run: Run) -> None:
+        assert run.mission is not None
+        self.director = Director(run.mission, World(run.mission.obstacle), radius=0.2)
+
+    def look(self, view: Snapshot) -> None:
+        """Take note of a snapshot."""
+        assert view.vehicle is not None
+        assert view.status is not None
+        x, y, z, _ = view.vehicle.position
+        flags = {"in_air": bool(view.status.in_air), "armed": bool(view.status.armed)}
+        self.director.vehicle(view.vehicle.t, (x, y, z), **flags)
+        if view.pilot is not None and view.pilot.phase == Phase.ENGAGED:
+            force = (0.0, 0.0, 0.0) if view.handle is None else tuple(view.handle.force)
+            self.director.controller(tuple(view.pilot.error)[:3], force)
 
 
 class CannedReader:

@@ -15,6 +15,7 @@ from drivers.stick import StickSender
 from drivers.virtual import VirtualHandle
 from groundstation.bus import Bus
 from groundstation.config import Settings
+from groundstation.devices.keeper import DeviceKeeper
 from groundstation.messages import (
     COMMAND,
     COMMAND_ANSWER,
@@ -102,7 +103,12 @@ class Bench:
         self.world = World(self.run_id, socket)
         self.bus = Bus(self.run_id, "pilot")
         self.device = VirtualHandle(socket, lambda: self.now)
-        self.servo = Servo(self.run_, self.bus, self.device, lambda: self.now, lambda work: work())
+        self.servo = Servo(
+            self.run_,
+            self.bus,
+            DeviceKeeper(self.device, self.bus.event, lambda: self.now, lambda work: work()),
+            lambda: self.now,
+        )
         self.stick: tuple[float, float, float] | None = (0.0, 0.0, 0.0)
         self.buttons = 0
         self.vehicle = True

@@ -74,6 +74,13 @@ def ahead(distance):
     return [distance, *NOTHING[1:]]
 
 
+@pytest.mark.parametrize(("clock", "believed"), [(1.0, True), (3e6, True), (NAN, False), (INF, False)])
+def test_a_state_is_believed_however_long_the_machine_has_been_up(vehicle, clock, believed):
+    vehicle.is_at(clock, 1.0, 2.0, 3.0, 0.0)
+    vehicle.feed.update(clock, (0.0,) * 4)
+    assert vehicle.feed.believable is believed
+
+
 def test_what_is_ahead_is_placed_in_the_world(vehicle):
     vehicle.is_at(10.0, 1.0, 2.0, 3.0, math.pi / 2)
     vehicle.sees(10.01, ahead(2.0), below=1.2)

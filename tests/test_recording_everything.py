@@ -20,8 +20,13 @@ _KNOWN = {
 }  # fmt: skip
 
 
+# The rows of the handle are the ticks, counted on from the last of `/servo/tick`.
+_COUNTED = {("handle", "tick")}
+
+
 def fields() -> list[tuple[Topic, str]]:
-    return [(topic, name) for topic in TOPICS for name, *_ in topic.record._fields_ if name != "t"]
+    every = [(topic, name) for topic in TOPICS for name, *_ in topic.record._fields_ if name != "t"]
+    return [(topic, name) for topic, name in every if (topic.name, name) not in _COUNTED]
 
 
 def a_record(kind: type[Record], t: float, /, **changed: object) -> Record:

@@ -18,6 +18,7 @@ from groundstation.messages import (
     ATTITUDE,
     COMMAND,
     COMMAND_ANSWER,
+    DEVICE_REPORT,
     HANDLE,
     HEARTBEAT,
     MISSION_PROGRESS,
@@ -25,25 +26,28 @@ from groundstation.messages import (
     PILOT_STATE,
     SERVO_REPORT,
     SETPOINT,
+    TICK_INPUTS,
     VEHICLE_STATE,
     VEHICLE_STATUS,
     Attitude,
     Command,
     CommandAnswer,
     CommandKind,
+    DeviceReport,
     Heartbeat,
     MissionProgress,
     Phase,
     Record,
     ServoReport,
+    TickInputs,
     Topic,
 )
 from groundstation.pilot.controller import vehicle_rates as control_law
 from groundstation.recording import entities, schema
 from groundstation.recording.batch import Batch
-from groundstation.recording.columns import Heartbeats, OnChange, number_chunks, vehicle_rates
+from groundstation.recording.columns import Heartbeats, OnChange, number_chunks, number_columns, vehicle_rates
 from groundstation.recording.echoes import Echoes
-from groundstation.recording.item import Chunk
+from groundstation.recording.item import Chunk, nanoseconds, time_column
 from groundstation.recording.motion import Motion, Trail, quaternions
 from groundstation.recording.session import start_of
 
@@ -81,6 +85,8 @@ def full_batch() -> Batch:
     servo = ServoReport(t=t, rate=999.0, late_p50=1e-5, late_p99=2e-5, late_max=3e-5, read=4e-5, write=5e-5)
     return batch_of(
         (HANDLE, [a_handle(t, 7)]),
+        (TICK_INPUTS, [TickInputs(t=t, tick=7, dt=0.001, state_t=t, commands=1, read=1)]),
+        (DEVICE_REPORT, [DeviceReport(t=t, axes=4, workspace=0.05, rate=1000.0)]),
         (SETPOINT, [a_setpoint(t)]),
         (PILOT_STATE, [a_pilot_state(t)]),
         (VEHICLE_STATE, [a_vehicle_state(t)]),
@@ -96,7 +102,10 @@ def full_batch() -> Batch:
 
 def test_a_batch_of_everything_fills_every_quantity_of_the_schema():
     batch = full_batch()
-    chunks = by_path([*number_chunks(batch, START), *OnChange().chunks(batch, START)])
+    rows = [*number_columns(batch), *OnChange().columns(batch)]
+    untrusted = number_columns(batch_of((VEHICLE_STATE, [a_vehicle_state(START + 1.5, valid=False)])))
+    rows += [column for column in untrusted if column.quantity is schema.UNTRUSTED]
+    chunks = by_path(number_chunks(rows, START))
     assert set(chunks) == {quantity.path for quantity in schema.QUANTITIES}
     for quantity in schema.QUANTITIES:
         assert numbers(chunks[quantity.path]).shape == (1, len(quantity.parts)), quantity.path
@@ -104,11 +113,11 @@ def test_a_batch_of_everything_fills_every_quantity_of_the_schema():
 
 
 def test_an_empty_batch_has_no_rows():
-    assert list(number_chunks(Batch(), START)) == []
+    assert list(number_chunks(number_columns(Batch()), START)) == []
 
 
 def test_numbers_stand_where_the_schema_says():
-    chunks = by_path(number_chunks(full_batch(), START))
+    chunks = by_path(number_chunks(number_columns(full_batch()), START))
     expected = {
         schema.HANDLE_POSITION: [7e-6, -7e-6, 0.01, 7e-4],
         schema.HANDLE_FORCE: [7e-3, 2.0, -3.0],
@@ -153,7 +162,7 @@ def test_numbers_stand_where_the_schema_says():
 
 def test_executed_velocity_is_on_the_axes_of_the_reference():
     state = a_vehicle_state(START)
-    chunks = by_path(number_chunks(batch_of((VEHICLE_STATE, [state])), START))
+    chunks = by_path(number_chunks(number_columns(batch_of((VEHICLE_STATE, [state]))), START))
     executed = [numbers(chunks[quantity.path])[0, 0] for quantity in schema.EXECUTED]
     npt.assert_allclose(executed, control_law(tuple(state.velocity), state.position[3]))
 
@@ -167,7 +176,7 @@ def test_turning_many_rows_is_the_control_laws_turn_of_each(rows):
 
 def test_what_the_vehicle_calls_invalid_is_not_known():
     states = [a_vehicle_state(START), a_vehicle_state(START + 0.02, valid=False)]
-    chunks = by_path(number_chunks(batch_of((VEHICLE_STATE, states)), START))
+    chunks = by_path(number_chunks(number_columns(batch_of((VEHICLE_STATE, states))), START))
     for quantity in (*schema.EXECUTED, schema.POSITION, schema.VELOCITY):
         first, second = numbers(chunks[quantity.path])
         assert np.isfinite(first).all()
@@ -176,7 +185,7 @@ def test_what_the_vehicle_calls_invalid_is_not_known():
 
 def test_without_an_active_setpoint_there_is_no_reference():
     setpoints = [a_setpoint(START), a_setpoint(START + 0.02, active=False)]
-    chunks = by_path(number_chunks(batch_of((SETPOINT, setpoints)), START))
+    chunks = by_path(number_chunks(number_columns(batch_of((SETPOINT, setpoints))), START))
     for quantity, value in zip(schema.REFERENCES, (1.0, 2.0, 3.0, 4.0), strict=True):
         npt.assert_array_equal(numbers(chunks[quantity.path])[:, 0], [value, np.nan])
     npt.assert_allclose(numbers(chunks[schema.HANDLE_AGE.path])[:, 0], [0.004, np.nan])
@@ -201,13 +210,22 @@ def test_buttons_are_logged_when_pressed_or_let_go():
         return batch_of((HANDLE, handles))
 
     buttons = OnChange()
-    first, ready = buttons.chunks(held(0.0, 0, 0, 5, 5), START)
-    assert (ready.path, len(seconds(ready))) == (schema.HANDLE_READY.path, 1)
-    npt.assert_allclose(seconds(first), [0.0, 2.0])
-    npt.assert_array_equal(numbers(first)[:, 0], [0, 5])
-    assert not list(buttons.chunks(held(4.0, 5, 5), START))
-    (last,) = buttons.chunks(held(6.0, 0), START)
-    npt.assert_array_equal(numbers(last)[:, 0], [0])
+    first, ready = buttons.columns(held(0.0, 0, 0, 5, 5))
+    assert (ready.quantity, len(ready.t)) == (schema.HANDLE_READY, 1)
+    npt.assert_array_equal(first.t, [START, START + 2.0])
+    npt.assert_array_equal(first.values[:, 0], [0, 5])
+    assert not list(buttons.columns(held(4.0, 5, 5)))
+    (last,) = buttons.columns(held(6.0, 0))
+    npt.assert_array_equal(last.values[:, 0], [0])
+
+
+@given(st.integers(0, 2**53 - 1), st.integers(0, 2**50))
+def test_times_come_back_as_the_very_floats_of_the_clock(n, start):
+    """Up to the 104 days for which a clock's floats tell one nanosecond of uptime from the next but one."""
+    t = n / 1e9
+    assert nanoseconds(np.array([t]))[0] / 1e9 == t
+    since = time_column(np.array([t]), start / 1e9).times.cast("int64").to_numpy()
+    assert (since[0] + start) / 1e9 == t
 
 
 @given(ANGLES, st.floats(-1.5, 1.5), ANGLES)

@@ -304,7 +304,7 @@ async def test_with_another_device_the_handle_is_drawn_and_nothing_is_sent():
         stick = scene.app._flight.query_one(Stick)
         await scene.pilot.mouse_down("#stick", offset=(26, 2))
         await scene.pilot.pause()
-        assert stick.border_title == "handle"
+        assert str(stick.border_title).startswith("handle")
         assert scene.app.hand.share == CENTRED
         assert scene.app.mouse_captured is None
         assert scene.stick.sent == []

@@ -81,12 +81,12 @@ def test_a_ring_keeps_the_last_rows_in_order(values, size):
 def test_hovering_adds_nothing_to_the_track_and_a_jump_starts_it_anew():
     track = Track()
     for step in range(100):
-        track.add(0.001 * step, 0.0, 2.0, 0.1 * step)
+        track.add(0.001 * step, 0.0, 2.0, 10.0 + step)
     assert len(track.points()) == 2
-    track.add(math.nan, 1.0, 2.0, 10.0)
+    track.add(math.nan, 1.0, 2.0, 111.0)
     assert len(track.points()) == 2
-    track.add(50.0, 0.0, 2.0, 11.0)
-    assert track.points().tolist() == [[50.0, 0.0, 2.0, 11.0]]
+    track.add(50.0, 0.0, 2.0, 112.0)
+    assert track.points().tolist() == [[50.0, 0.0, 2.0, 112.0]]
 
 
 def test_the_history_samples_at_its_rate_and_leaves_gaps_for_what_is_old():

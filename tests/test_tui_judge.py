@@ -12,9 +12,10 @@ from groundstation.messages import Event, Phase, ServoReport, Severity, VehicleS
 from groundstation.tui import judge
 from groundstation.tui.acts import ACTS
 from groundstation.tui.alarms import Alarms
-from groundstation.tui.alerts import alerts, distance_to_target, next_step
+from groundstation.tui.alerts import conditions
 from groundstation.tui.frame import Frame
 from groundstation.tui.hand import CENTRED
+from groundstation.tui.hints import distance_to_target, next_step
 from groundstation.tui.track import History, Track
 
 INFO, WARNING, ALARM = Severity.INFO, Severity.WARNING, Severity.ALARM
@@ -33,6 +34,14 @@ def frame(snapshot=None, guarded_by: str = "", **states: str) -> Frame:
         snapshot=shown, run=RUN, started=1000.0, states=states, stick=CENTRED,
         hindrances={act.name: "" for act in ACTS}, guarded_by=guarded_by, notes=(), track=Track(), history=History(),
     )  # fmt: skip
+
+
+def worst(shown: Frame) -> tuple[Severity, str]:
+    """Return what the banner says of a frame that is the first of all."""
+    alarms = Alarms()
+    alarms.look(conditions(shown), shown.now)
+    first = alarms.first()
+    return (first.severity, first.text) if first is not None else (INFO, next_step(shown))
 
 
 @pytest.mark.parametrize(
@@ -57,12 +66,6 @@ def test_a_vehicle_never_heard_has_no_age():
 )
 def test_the_battery(share, severity):
     assert judge.battery(share) is severity
-
-
-def worst(shown):
-    """Return severity and words of the most urgent of what is wrong."""
-    found = Alarms().look(alerts(shown), shown.now)
-    return (found[0].severity, found[0].text) if found else (INFO, "")
 
 
 @pytest.mark.parametrize(
@@ -91,8 +94,9 @@ def test_a_mode_that_is_not_known_is_another():
 
 
 def test_all_well_says_what_can_be_done():
-    assert worst(frame()) == (INFO, "")
-    assert next_step(frame()).startswith("Engaged. Target")
+    severity, text = worst(frame())
+    assert severity is INFO
+    assert text.startswith("Engaged. Target")
 
 
 def test_a_dead_process_is_said_with_what_it_means():
@@ -165,18 +169,18 @@ def test_the_next_step_follows_the_flight():
     shown.pilot.phase = Phase.ENGAGING
     assert "Engaging" in next_step(frame(shown))
     shown.pilot.phase, shown.pilot.on_leash = Phase.ENGAGED, 1
-    assert "leash" in worst(frame(shown))[1]
+    assert "leash" in next_step(frame(shown))
 
 
 def test_what_keeps_the_vehicle_from_the_hand_is_said_the_hands_own_part_first():
     shown = flying()
     shown.pilot.on_leash = 1
-    assert worst(frame(shown, "column"))[1] == "Guard: it keeps the vehicle away from column."
-    assert worst(frame(shown, "floor"))[1] == "Guard: it keeps the vehicle away from the ground."
+    assert next_step(frame(shown, "column")) == "Guard: it keeps the vehicle away from column."
+    assert next_step(frame(shown, "floor")) == "Guard: it keeps the vehicle away from the ground."
     shown.pilot.waiting = 1
-    assert worst(frame(shown, "column"))[1] == "Centre the handle to take hold."
+    assert next_step(frame(shown, "column")) == "Centre the handle to take hold."
     shown.pilot.clutched = 1
-    assert worst(frame(shown, "column"))[1] == "Clutch: the handle moves nothing. C takes hold again."
+    assert next_step(frame(shown, "column")) == "Clutch: the handle moves nothing. C takes hold again."
 
 
 def test_the_way_to_the_target():

@@ -13,7 +13,7 @@ from groundstation.messages import RING_SECTORS
 from groundstation.tui import moving
 from groundstation.tui.canvas import Canvas
 from groundstation.tui.theme import Tone
-from groundstation.tui.view import View, framing
+from groundstation.tui.view import SIDE_EAST, View, framing
 
 VIEW = View(0.0, 0.0, 0.1, 160, 160)
 HERE = (0.0, 0.0, 2.0, 0.0)
@@ -30,9 +30,10 @@ def dots(canvas: Canvas) -> set[tuple[int, int]]:
     return {(int(column) - 80, int(row) - 80) for row, column in zip(rows, columns, strict=True)}
 
 
-def predicted(pose: moving.Pose, stop: moving.Place) -> Canvas:
+def predicted(pose: tuple[float, float, float], stop: tuple[float, float]) -> Canvas:
     canvas = Canvas(80, 40)
-    moving.draw_predicted(canvas, VIEW, HERE, pose, stop)
+    east, north, yaw = pose
+    moving.draw_predicted(canvas, VIEW, HERE, (east, north, 2.0, yaw), (*stop, 2.0))
     return canvas
 
 
@@ -53,7 +54,7 @@ def test_a_vehicle_that_is_nowhere_is_not_drawn():
     view = framing(None, [], 80, 80)
     canvas = Canvas(40, 20)
     moving.draw_vehicle(canvas, view, (math.nan, 0.0, 0.0, 0.0))
-    moving.draw_hand(canvas, view, (0.0, math.nan, 2.0), (1.0, 1.0, 2.0), 1.5, taut=False)
+    moving.draw_hand(canvas, view, (0.0, math.nan, 0.0), (1.0, 1.0, 0.0), 1.5, taut=False)
     moving.draw_trail(canvas, view, np.empty((0, 4)), 0.0)
     assert tones(canvas) == set()
 
@@ -69,7 +70,7 @@ def test_the_leash_is_drawn_taut_as_a_warning():
 
 
 def test_where_the_vehicle_will_be_is_a_hollow_arrowhead_there():
-    canvas = predicted((3.0, 0.0, 2.0, 0.0), (3.0, 0.0, 2.0))
+    canvas = predicted((3.0, 0.0, 0.0), (3.0, 0.0))
     rows, columns = np.nonzero(canvas._dots)
     assert columns.max() == pytest.approx(79.5 + 30 + 8, abs=1)
     assert columns.min() == pytest.approx(79.5 + 30 - 0.6 * 8, abs=1)
@@ -80,11 +81,11 @@ def test_where_the_vehicle_will_be_is_a_hollow_arrowhead_there():
 
 
 def test_without_a_delay_that_shows_nothing_is_predicted():
-    assert dots(predicted((0.15, 0.0, 2.0, 0.0), (0.4, 0.0, 2.0))) == set()
+    assert dots(predicted((0.15, 0.0, 0.0), (0.4, 0.0))) == set()
 
 
 def test_where_it_can_stop_is_a_cross_at_the_end_of_a_dotted_line():
-    drawn = dots(predicted(HERE, (0.0, -4.0, 2.0)))
+    drawn = dots(predicted((0.0, 0.0, 0.0), (0.0, -4.0)))
     middle = (min(drawn, key=lambda dot: abs(dot[1] - 40))[0], 40)
     arms = {(column, row) for column, row in drawn if row > 37}
     assert {(middle[0] + i, 40 + j) for i in (-2, 2) for j in (-2, 2)} & {
@@ -97,7 +98,7 @@ def test_where_it_can_stop_is_a_cross_at_the_end_of_a_dotted_line():
 
 @given(east=anything, north=anything, yaw=anything, far=anything)
 def test_a_forecast_of_any_numbers_can_be_drawn(east, north, yaw, far):
-    canvas = predicted((east, north, 2.0, yaw), (far, north, 2.0))
+    canvas = predicted((east, north, yaw), (far, north))
     if not all(map(math.isfinite, (east, north, yaw, far))):
         assert dots(canvas) == set()
 
@@ -114,3 +115,22 @@ def test_echoes_are_where_the_sensors_see_them_turned_with_the_vehicle():
     for wanted in (ahead, left):
         assert any(math.dist(dot, wanted) < 1.5 for dot in drawn)
     assert tones(canvas) == {Tone.WARN}
+
+
+def test_the_way_flown_is_dimmer_the_older_it_is():
+    points = np.array([(x, 0.0, 2.0, x) for x in np.arange(0.0, 60.0, 1.0)])
+    tones_shown = moving.tones_by_age(60.0 - points[:, 3])
+    order = [Tone.FADED, Tone.TRAIL, Tone.VEHICLE]
+    assert [tone for i, tone in enumerate(tones_shown) if i == 0 or tone != tones_shown[i - 1]] == order
+    canvas = Canvas(80, 40)
+    moving.draw_trail(canvas, View(30.0, 0.0, 0.5, 160, 160), points, 60.0)
+    assert tones(canvas) == set(order)
+
+
+def test_from_the_side_the_hand_is_at_its_altitude():
+    view = View(0.0, 2.0, 0.1, 160, 160, SIDE_EAST)
+    canvas = Canvas(80, 40)
+    moving.draw_hand(canvas, view, (0.0, 9.0, 2.0), (0.0, -9.0, 3.0), 0.5, taut=False)
+    rows, columns = np.nonzero(canvas._dots)
+    assert rows.min() == pytest.approx(float(view.y(3.0)) - 2, abs=1)
+    assert columns.max() - columns.min() <= 11

@@ -1,5 +1,5 @@
 """Make all pictures of README and docs: the screen from a canned flight, the report's figures from virtual ones, the
-viewer from a real one.
+viewer and the moving one from real ones.
 
 `make docs-pictures`. The viewer's picture needs a Vulkan driver (Debian: mesa-vulkan-drivers, libvulkan1).
 """
@@ -18,7 +18,7 @@ FLY = ("-m", "groundstation.cli", "--sim", "--headless", "--mission", "paper", "
 
 def main() -> None:
     """Make them."""
-    for picture in ("screen.py", "paper.py"):
+    for picture in ("screen.py", "paper.py", "session.py"):
         subprocess.run([sys.executable, HERE / picture], check=True)
     with tempfile.TemporaryDirectory() as logs:
         flown = subprocess.run(

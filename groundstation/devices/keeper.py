@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable
+from typing import Protocol
 
 from drivers.device import ZERO3, DeviceError, DeviceInfo, HandleState, HapticDevice, Vector3
 from groundstation.clock import Clock
@@ -34,6 +35,27 @@ _PATIENCE_S = 2.0
 def in_thread(work: Callable[[], None]) -> None:
     """Start work in a thread of its own."""
     threading.Thread(target=work, name="open device", daemon=True).start()
+
+
+class Keeper(Protocol):
+    """What a servo needs of who keeps its device; see `DeviceKeeper`."""
+
+    info: DeviceInfo
+    present: bool
+    read_s: float
+    write_s: float
+
+    def read(self, now: float) -> HandleState | None:
+        """Return the handle's state, or None where there is none now; `now` in monotonic s."""
+        ...
+
+    def write(self, force: Vector3) -> None:
+        """Render a force, N, handle frame, where there is a device."""
+        ...
+
+    def close(self) -> None:
+        """Render nothing and let the device go."""
+        ...
 
 
 class DeviceKeeper:

@@ -20,7 +20,7 @@ from groundstation.messages import FlightMode, Phase, Severity, Stream
 ENGAGE_TIMEOUT_S = 3.0
 STALL_S = 0.15
 CENTRED = 0.15
-# In metres, seconds, radians: nothing here is a million of anything. Comparisons are false for NaN.
+# In metres, m/s, radians: nothing here is a million of anything. Comparisons are false for NaN.
 _ABSURD = 1e6
 
 _STREAMING = frozenset({Stream.STARTING, Stream.FLYING})

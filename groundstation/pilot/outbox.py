@@ -19,6 +19,7 @@ from groundstation.messages import (
     REASON_TEXT,
     SERVO_REPORT,
     SETPOINT,
+    TICK_INPUTS,
     Command,
     CommandAnswer,
     CommandKind,
@@ -28,6 +29,7 @@ from groundstation.messages import (
     PilotState,
     ServoReport,
     Setpoint,
+    TickInputs,
     fit,
 )
 from groundstation.pilot.choices import Choices
@@ -50,6 +52,21 @@ class Tick(NamedTuple):
     stop: Vector3
 
 
+class MadeFrom(NamedTuple):
+    """What ticks are made from besides the hand; see `TickInputs`."""
+
+    dt: float
+    state_t: float
+    status_t: float
+    ranges_t: float
+    command_t: float
+    commands: int
+    fitted: int
+    read: bool
+    homed: bool
+    present: bool
+
+
 class Outbox:
     """The pilot's records and their senders.
 
@@ -59,6 +76,7 @@ class Outbox:
 
     def __init__(self, bus: Bus) -> None:
         self._handles = bus.publisher(HANDLE)
+        self._inputs = bus.publisher(TICK_INPUTS)
         self._setpoints = bus.publisher(SETPOINT)
         self._states = bus.publisher(PILOT_STATE)
         self._answers = bus.publisher(COMMAND_ANSWER)
@@ -67,6 +85,7 @@ class Outbox:
         self._servo_reports = bus.publisher(SERVO_REPORT)
         self._device_reports = bus.publisher(DEVICE_REPORT)
         self._handle = Handle()
+        self._made_from: MadeFrom | None = None
         self._setpoint = Setpoint()
         self._state = PilotState()
         self._servo_report = ServoReport()
@@ -89,6 +108,12 @@ class Outbox:
         record.present = present
         record.tick += 1
         self._handles.send(record)
+
+    def made_from(self, t: float, inputs: MadeFrom) -> None:
+        """Say what the tick whose handle was sent last was made from, where that is another than before."""
+        if inputs != self._made_from:
+            self._made_from = inputs
+            self._inputs.send(TickInputs(t, self._handle.tick, *inputs))
 
     def setpoint(self, t: float, velocity: Vector4, handle_t: float, *, active: bool) -> None:
         """Send what the vehicle shall do."""
@@ -148,7 +173,8 @@ class Outbox:
         record.t = t
         record.name, record.serial = fit(info.name, _NAME), fit(info.serial, _NAME)
         record.renders = fit(info.renders, _RENDERS)
-        record.workspace, record.force_limit = info.workspace, info.force_limit
+        record.axes, record.workspace, record.rate = info.axes, info.workspace, info.rate
+        record.force_limit, record.stiffness_limit = info.force_limit, info.stiffness_limit
         record.present, record.homed = present, homed
         self._device_reports.send(record)
 

@@ -10,12 +10,12 @@ from __future__ import annotations
 import gc
 import time
 
-from drivers.device import ZERO3, DeviceError, DeviceInfo, HandleState, HapticDevice
+from drivers.device import ZERO3, DeviceError, DeviceInfo, HandleState
 from groundstation.bus import Bus
 from groundstation.child import Lifeline, run_child
 from groundstation.clock import Clock, Every, Pacer
 from groundstation.config import differences
-from groundstation.devices.keeper import ABSENT, DeviceKeeper, Start, in_thread
+from groundstation.devices.keeper import ABSENT, DeviceKeeper, Keeper
 from groundstation.devices.making import flight_device
 from groundstation.messages import COMMAND, Command, CommandKind, MappingMode, Phase, Severity
 from groundstation.pilot.chooser import (
@@ -40,7 +40,7 @@ from groundstation.pilot.guest import load_controller
 from groundstation.pilot.inputs import Inputs
 from groundstation.pilot.lateness import Lateness
 from groundstation.pilot.link_state import link_fault
-from groundstation.pilot.outbox import Outbox, Tick
+from groundstation.pilot.outbox import MadeFrom, Outbox, Tick
 from groundstation.pilot.pilot import Memory, Outputs, Pilot
 from groundstation.pilot.realtime import request_realtime
 from groundstation.pilot.sight import ZERO4
@@ -73,22 +73,14 @@ class Servo:
     Args:
         run: Settings, mission, and what is known of the vehicle.
         bus: Where records come from and go to.
-        device: Not yet open.
+        keeper: Of the haptic device.
         clock: Monotonic seconds.
-        start: Starts the device's opening.
 
     Attributes:
         rate: Ticks a second that the device is made for, Hz.
     """
 
-    def __init__(
-        self,
-        run: Run,
-        bus: Bus,
-        device: HapticDevice,
-        clock: Clock = time.monotonic,
-        start: Start = in_thread,
-    ) -> None:
+    def __init__(self, run: Run, bus: Bus, keeper: Keeper, clock: Clock = time.monotonic) -> None:
         self._run = run
         self._settings = run.settings
         self._surroundings = surroundings_of(run)
@@ -96,7 +88,7 @@ class Servo:
         self._chosen = beginning(run.settings)
         self._bus = bus
         self._clock = clock
-        self._keeper = DeviceKeeper(device, bus.event, clock, start)
+        self._keeper = keeper
         self._feed = VehicleFeed(bus, self._surroundings.radius)
         self._ahead = ZERO4
         self._commands = bus.subscriber(COMMAND)
@@ -107,7 +99,9 @@ class Servo:
         self._reason = ""
         self._last_t = clock()
         self._step_s = 0.0
-        self._told_present = False
+        self._told_present, self._told_info = False, ABSENT
+        self._fitted = self._taken = 0
+        self._taken_t = 0.0
         self._fit(ABSENT)
 
     def tick(self, now: float, dt: float) -> None:
@@ -146,8 +140,8 @@ class Servo:
         """Tell twice a second which device there is, at once when it comes or goes, and how time is kept."""
         keeper = self._keeper
         due = self._report_due.due(now)
-        if due or keeper.present is not self._told_present:
-            self._told_present = keeper.present
+        if due or keeper.present is not self._told_present or keeper.info is not self._told_info:
+            self._told_present, self._told_info = keeper.present, keeper.info
             self._outbox.device_report(now, keeper.info, present=keeper.present, homed=self._homed)
         if not due:
             return
@@ -172,6 +166,7 @@ class Servo:
         self._pilot = Pilot(self._settings, info, self._surroundings, self._controller)
         self._memory = Memory()
         self._homed = False
+        self._fitted += 1
         self._tell_gains()
 
     def _tell_gains(self) -> None:
@@ -217,6 +212,8 @@ class Servo:
     def _decide(self, conditions: Conditions) -> bool:
         """Follow commands and conditions; return whether the force must be gone at once."""
         for command in self._commands.drain():
+            self._taken += 1
+            self._taken_t = command.t
             self._obey(command, conditions)
         phase = self._engagement.phase
         self._engagement, ending = advance(self._engagement, conditions, self._settings.safety)
@@ -281,9 +278,14 @@ class Servo:
         self._bus.event(ending.severity, f"Disengaged: {ending.words}.")
 
     def _publish(self, c: Conditions, inputs: Inputs, outputs: Outputs, *, changed: bool) -> None:
-        """Send the handle; at 50 Hz, and at once on a change, the setpoint and the controller's state."""
-        hand = inputs.hand
-        self._outbox.handle(c.t, hand, outputs.force, present=self._keeper.present)
+        """Send handle and inputs; at 50 Hz, and at once on a change, the setpoint and the controller's state."""
+        hand, present, feed = inputs.hand, self._keeper.present, self._feed
+        self._outbox.handle(c.t, hand, outputs.force, present=present)
+        made_from = MadeFrom(
+            inputs.dt, feed.newest_t, feed.status_t, feed.ranges_t, self._taken_t, self._taken, self._fitted,
+            c.present, c.homed, present,
+        )  # fmt: skip
+        self._outbox.made_from(c.t, made_from)
         due = self._setpoint_due.due(c.t)
         if not (due or changed):
             return
@@ -305,7 +307,7 @@ def body(run: Run, bus: Bus, lifeline: Lifeline) -> None:
         device = flight_device(run.device, run.settings)
     except DeviceError as error:
         raise SystemExit(str(error)) from error
-    servo = Servo(run, bus, device)
+    servo = Servo(run, bus, DeviceKeeper(device, bus.event, time.monotonic))
     words = request_realtime()
     if words:
         bus.event(Severity.INFO, words)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import inf, nan
+from math import inf, isfinite, nan
 
 from groundstation.bus import Bus
 from groundstation.frames import Vector3, Vector4
@@ -37,6 +37,8 @@ class VehicleFeed:
     Attributes:
         sample: Position and velocity, the last that were believable.
         state_t: When that state came, monotonic s; minus infinity before the first.
+        newest_t, status_t, ranges_t: `t` of the newest state, believable or not, of the newest status, and of what
+            was last seen around; 0 before the first.
         believable: The very newest state is.
         valid: The vehicle trusts that state itself.
         boots: How often its clock started anew.
@@ -56,11 +58,11 @@ class VehicleFeed:
         self._state: VehicleState | None = None
         self._status: VehicleStatus | None = None
         self._looked: Ranges | None = None
-        self._looked_t = -inf
         self._echoes = Echoes()
         self._boot_t = 0.0
         self.sample = VehicleSample()
         self.state_t = -inf
+        self.newest_t = self.status_t = self.ranges_t = 0.0
         self.believable = True
         self.valid = False
         self.boots = 0
@@ -97,15 +99,18 @@ class VehicleFeed:
             self._looked = ranges
             self._take_ranges(ranges)
             moved = True
-        if not now - self._looked_t <= SEEN_S:
+        if not now - self.ranges_t <= SEEN_S:
             self._echoes, self.seen = Echoes(), ()
         elif moved:
             self.seen = bounding(self._echoes, ahead[:3])
 
     def _take_state(self, state: VehicleState) -> None:
+        self.newest_t = state.t
         position, velocity = tuple(state.position), tuple(state.velocity)
         self.valid = bool(state.valid)
-        self.believable = believable((*position, *velocity, state.t, state.boot_t))
+        # A clock may well stand at a million seconds: that is eleven days since its machine was started.
+        clocks = isfinite(state.t) and isfinite(state.boot_t)
+        self.believable = clocks and believable((*position, *velocity))
         if not self.believable:
             return
         self.sample = VehicleSample(position, velocity)
@@ -115,6 +120,7 @@ class VehicleFeed:
         self._boot_t = state.boot_t
 
     def _take_status(self, status: VehicleStatus) -> None:
+        self.status_t = status.t
         self.connected = bool(status.connected)
         self.armed = bool(status.armed)
         self.in_air = bool(status.in_air)
@@ -127,7 +133,7 @@ class VehicleFeed:
 
     def _take_ranges(self, ranges: Ranges) -> None:
         """Place what was measured, from where the vehicle was as it came; without that there is nothing."""
-        self._looked_t = ranges.t
+        self.ranges_t = ranges.t
         since = ranges.t - self.state_t
         if not (self.valid and abs(since) <= SEEN_S):
             self._echoes = Echoes()

@@ -10,25 +10,27 @@ from pathlib import Path
 from typing import Any
 
 import msgspec
+import numpy as np
 import rerun as rr
 
 import groundstation
 from groundstation.messages import DeviceReport
 from groundstation.recording import entities, schema
 from groundstation.recording.batch import text
-from groundstation.recording.item import Still
+from groundstation.recording.item import Still, nanoseconds
 from groundstation.run import Run
 
 _SOURCE = Path(groundstation.__file__).resolve().parents[1]
 _PROPERTIES = "/__properties"
 
 
-def about_flight(run: Run) -> Iterator[Still]:
-    """Yield what is known when the run starts."""
+def about_flight(run: Run, start: float) -> Iterator[Still]:
+    """Yield what is known when the run starts, at `start` on the monotonic clock, s."""
     mission = run.mission
     facts: dict[str, Any] = {
         "schema": schema.VERSION,
         "started": run.started,
+        "start_ns": int(nanoseconds(np.array([start]))[0]),
         "mission": mission.name if mission else "",
         "vehicle": run.url,
         "simulated": run.simulated,

@@ -20,6 +20,7 @@ from groundstation.messages import (
     PILOT_STATE,
     SERVO_REPORT,
     SETPOINT,
+    TICK_INPUTS,
     VEHICLE_STATE,
     VEHICLE_STATUS,
     Record,
@@ -30,6 +31,7 @@ R = TypeVar("R", bound=Record)
 
 TOPICS: tuple[Topic[Any], ...] = (
     HANDLE,
+    TICK_INPUTS,
     SETPOINT,
     PILOT_STATE,
     VEHICLE_STATE,

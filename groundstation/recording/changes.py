@@ -45,6 +45,9 @@ _PILOT_WORDS = (
     "compensated",
 )  # fmt: skip
 
+# What stands where the vehicle's own failsafes forbid nothing.
+SAFE = "nothing"
+
 Timed = tuple[float, str]
 
 
@@ -82,7 +85,7 @@ class Changes:
         for path, said in (
             (entities.REASON, ((state.t, text(state.reason)) for state in pilot)),
             (entities.GUARDED, ((state.t, _guarded(state)) for state in pilot)),
-            (entities.UNSAFE, ((state.t, text(state.unsafe)) for state in status)),
+            (entities.UNSAFE, ((state.t, text(state.unsafe) or SAFE) for state in status)),
         ):
             if lines := [(t, words, _INFO) for t, words in self._changed(path, said) if words]:
                 yield self._texts(path, lines)
@@ -121,7 +124,7 @@ class Changes:
         return changed
 
     def _times(self, timed: Iterable[tuple[float, object]]) -> rr.TimeColumn:
-        return time_column(np.array([t for t, _ in timed]) - self._start)
+        return time_column(np.array([t for t, _ in timed]), self._start)
 
     def _texts(self, path: str, lines: list[tuple[float, str, str]]) -> Chunk:
         times, texts, levels = zip(*lines, strict=True)

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import cache
-from typing import Any, cast
+from typing import Any, NamedTuple, cast
 
 import numpy as np
 import numpy.typing as npt
@@ -14,6 +14,7 @@ from groundstation.messages import (
     ATTITUDE,
     COMMAND,
     COMMAND_ANSWER,
+    DEVICE_REPORT,
     HANDLE,
     HEARTBEAT,
     MISSION_PROGRESS,
@@ -21,6 +22,7 @@ from groundstation.messages import (
     PILOT_STATE,
     SERVO_REPORT,
     SETPOINT,
+    TICK_INPUTS,
     VEHICLE_STATE,
     VEHICLE_STATUS,
     Heartbeat,
@@ -111,8 +113,16 @@ _NUMBERS: tuple[tuple[Topic[Any], tuple[tuple[Quantity, Callable[[Rows], Numbers
         (
             (schema.HANDLE_POSITION, _with_yaw("position")),
             (schema.HANDLE_VELOCITY, _fields("velocity")),
+            # Exact both ways: so is a difference of floats within a factor of two of each other (Sterbenz's lemma).
+            (schema.SAMPLE_AGE, lambda rows: rows["t"] - rows["device_t"]),
             (schema.HANDLE_FORCE, _fields("force")),
-            (schema.HANDLE_CLOCK, _fields("device_t", "tick")),
+        ),
+    ),
+    (
+        TICK_INPUTS,
+        (
+            (schema.TICK, _fields("tick", "dt", "fitted", "read", "homed", "present")),
+            (schema.KNOWN, _fields("state_t", "status_t", "ranges_t", "command_t", "commands")),
         ),
     ),
     (
@@ -212,23 +222,57 @@ _NUMBERS: tuple[tuple[Topic[Any], tuple[tuple[Quantity, Callable[[Rows], Numbers
 )
 
 
-def number_chunks(batch: Batch, start: float) -> Iterator[Chunk]:
-    """Yield the numbers of a batch, an entity each.
+# What changes seldom: a row only when it does.
+_RARE: tuple[tuple[Topic[Any], Quantity, Callable[[Rows], Numbers]], ...] = (
+    (HANDLE, schema.HANDLE_BUTTONS, _fields("buttons")),
+    (HANDLE, schema.HANDLE_READY, _fields("present", "homed")),
+    (PILOT_STATE, schema.CENTRED, _fields("centred")),
+    (VEHICLE_STATUS, schema.SYSTEM_ID, _fields("system_id")),
+    (SERVO_REPORT, schema.REALTIME, _fields("realtime")),
+    (VEHICLE_STATUS, schema.STATUS, _fields("connected", "armed", "in_air", "mode", "streaming")),
+    (DEVICE_REPORT, schema.LIMITS, _fields("axes", "workspace", "force_limit", "stiffness_limit", "rate")),
+)
 
-    Args:
-        batch: What came.
-        start: Monotonic time that is 0 on the timeline, s.
-    """
+
+class Column(NamedTuple):
+    """Numbers of a quantity: (n,) monotonic s, and (n, parts) or (n,) values."""
+
+    quantity: Quantity
+    t: Numbers
+    values: Numbers
+
+
+def number_columns(batch: Batch) -> Iterator[Column]:
+    """Yield the numbers of a batch, a quantity each, a row a record."""
     for topic, quantities in _NUMBERS:
         if not batch.of(topic):
             continue
         rows = rows_in(batch, topic)
-        times = time_column(rows["t"] - start)
+        t = rows["t"]
         for quantity, values in quantities:
             numbers = values(rows)
             if quantity is not schema.RING:
                 numbers = _finite_or_nan(numbers)
-            yield Chunk(quantity.path, times, rr.Scalars.columns(scalars=numbers))
+            yield Column(quantity, t, numbers)
+    if untrusted := [state for state in batch.of(VEHICLE_STATE) if not state.valid]:
+        rows = rows_of(untrusted)
+        told = np.column_stack((rows["position"], rows["velocity"]))
+        yield Column(schema.UNTRUSTED, rows["t"], _finite_or_nan(told))
+
+
+def number_chunks(columns: Iterable[Column], start: float) -> Iterator[Chunk]:
+    """Yield numbers as they are sent, an entity each.
+
+    Args:
+        columns: The numbers.
+        start: Monotonic time that is 0 on the timeline, s.
+    """
+    shared, times = np.empty(0), time_column(np.empty(0))
+    for quantity, t, values in columns:
+        # Quantities of one record have their times in common.
+        if t is not shared:
+            shared, times = t, time_column(t, start)
+        yield Chunk(quantity.path, times, rr.Scalars.columns(scalars=values))
 
 
 def _finite_or_nan(values: Numbers) -> Numbers:
@@ -254,44 +298,29 @@ class Heartbeats:
         for role, heard in beats.items():
             times = np.array([self._last.get(role, heard[0].t), *(beat.t for beat in heard)])
             self._last[role] = heard[-1].t
-            column = time_column(times[1:] - start)
+            column = time_column(times[1:], start)
             yield Chunk(schema.heartbeat(role).path, column, rr.Scalars.columns(scalars=np.diff(times)))
             if heard[-1].pid != self._numbers.get(role):
                 self._numbers[role] = heard[-1].pid
                 number = rr.Scalars.columns(scalars=np.array([float(heard[-1].pid)]))
-                yield Chunk(schema.process_number(role).path, time_column(times[-1:] - start), number)
+                yield Chunk(schema.process_number(role).path, time_column(times[-1:], start), number)
 
 
 class OnChange:
-    """What seldom changes: a row only when it does."""
+    """Numbers that seldom change, a row only when one does."""
 
     def __init__(self) -> None:
         self._last: dict[str, Numbers] = {}
 
-    def chunks(self, batch: Batch, start: float) -> Iterator[Chunk]:
-        """Yield a batch's changes, an entity each."""
-        for topic, quantities in _SELDOM:
+    def columns(self, batch: Batch) -> Iterator[Column]:
+        """Yield a batch's changes."""
+        for topic, quantity, values_of in _RARE:
             if not batch.of(topic):
                 continue
             rows = rows_in(batch, topic)
-            for quantity, values in quantities:
-                numbers = values(rows).reshape(len(rows), -1)
-                before = np.vstack(
-                    (self._last.get(quantity.path, np.full(numbers.shape[1], np.nan)), numbers[:-1])
-                )
-                self._last[quantity.path] = numbers[-1]
-                changed = np.logical_or.reduce(numbers != before, axis=1)
-                if changed.any():
-                    times = time_column(rows["t"][changed] - start)
-                    yield Chunk(quantity.path, times, rr.Scalars.columns(scalars=numbers[changed]))
-
-
-_SELDOM: tuple[tuple[Topic[Any], tuple[tuple[Quantity, Callable[[Rows], Numbers]], ...]], ...] = (
-    (
-        HANDLE,
-        ((schema.HANDLE_BUTTONS, _fields("buttons")), (schema.HANDLE_READY, _fields("present", "homed"))),
-    ),
-    (PILOT_STATE, ((schema.CENTRED, _fields("centred")),)),
-    (VEHICLE_STATUS, ((schema.SYSTEM_ID, _fields("system_id")),)),
-    (SERVO_REPORT, ((schema.REALTIME, _fields("realtime")),)),
-)
+            values = values_of(rows).reshape(len(rows), -1)
+            before = self._last.get(quantity.path, np.full(values.shape[1], np.nan))
+            self._last[quantity.path] = values[-1]
+            changed = np.logical_or.reduce(np.diff(values, axis=0, prepend=before[None]) != 0.0, axis=1)
+            if changed.any():
+                yield Column(quantity, rows["t"][changed], values[changed])

@@ -42,7 +42,7 @@ class Echoes:
         there = np.isfinite(points).all(axis=2)
         lengths = there.sum(axis=1).astype(np.int32)
         columns = rr.Points3D.columns(positions=points[there]).partition(lengths)
-        yield Chunk(entities.ECHOES, time_column(rows["t"] - self._start), columns)
+        yield Chunk(entities.ECHOES, time_column(rows["t"], self._start), columns)
 
 
 def _placed(rows: Rows, poses: Numbers) -> Numbers:

@@ -49,4 +49,4 @@ class Gauges:
 
     def _chunk(self, quantity: schema.Quantity, t: Numbers, *parts: Numbers | float) -> Chunk:
         columns = np.column_stack([np.broadcast_to(part, len(t)) for part in parts])
-        return Chunk(quantity.path, time_column(t - self._start), rr.Scalars.columns(scalars=columns))
+        return Chunk(quantity.path, time_column(t, self._start), rr.Scalars.columns(scalars=columns))

@@ -73,7 +73,7 @@ class Incidents:
             self._collisions = progress.collisions
 
     def _times(self, *t: float) -> rr.TimeColumn:
-        return time_column(np.array(t) - self._start)
+        return time_column(np.array(t), self._start)
 
 
 def _merged(incidents: Sequence[Incident]) -> Iterator[Incident]:

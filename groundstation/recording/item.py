@@ -32,9 +32,31 @@ class Still(NamedTuple):
 Item = Chunk | Still
 
 
-def time_column(seconds: Numbers) -> rr.TimeColumn:
-    """Return the times of rows, s since the run was started."""
-    return rr.TimeColumn(TIMELINE, duration=np.rint(seconds * 1e9).astype("timedelta64[ns]"))
+def nanoseconds(seconds: Numbers) -> npt.NDArray[np.int64]:
+    """Return times as whole nanoseconds: divided by 1e9 those of a clock are the very same floats again.
+
+    A clock counts nanoseconds n and tells n / 1e9. After seven weeks of uptime the product back may be rounded to the
+    one beside it.
+
+    Args:
+        seconds: (n,), of a clock.
+    """
+    found = np.rint(seconds * 1e9).astype(np.int64)
+    for beside in (1, -1):
+        tried = found + beside
+        found = np.where((found / 1e9 != seconds) & (tried / 1e9 == seconds), tried, found)
+    return found
+
+
+def time_column(seconds: Numbers, start: float = 0.0) -> rr.TimeColumn:
+    """Return the times of rows since the run was started, to the nanosecond.
+
+    Args:
+        seconds: (n,), s on the clock that `start` is of.
+        start: What is 0 on the timeline.
+    """
+    since = nanoseconds(seconds) - nanoseconds(np.array([start]))
+    return rr.TimeColumn(TIMELINE, duration=since.astype("timedelta64[ns]"))
 
 
 def send(stream: rr.RecordingStream, items: Iterable[Item]) -> None:

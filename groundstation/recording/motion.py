@@ -88,21 +88,20 @@ class Motion:
             yield from self._hand(rows_in(batch, PILOT_STATE))
 
     def _vehicle(self, rows: Rows) -> Iterator[Chunk]:
-        times, position = rows["t"] - self._start, rows["position"]
+        times, position = time_column(rows["t"], self._start), rows["position"]
         pose = rr.Transform3D.columns(
             translation=position[:, :3], quaternion=quaternions(rows["roll"], rows["pitch"], position[:, 3])
         )
-        yield Chunk(entities.VEHICLE_POSE, time_column(times), pose)
+        yield Chunk(entities.VEHICLE_POSE, times, pose)
         ground = position[:, :3] * (1.0, 1.0, 0.0)
         plumbs = _strips(position[:, :3], ground)
-        yield Chunk(entities.PLUMB, time_column(times), rr.LineStrips3D.columns(strips=plumbs))
-        yield from self._vehicle_trail.add(times, position[:, :3])
+        yield Chunk(entities.PLUMB, times, rr.LineStrips3D.columns(strips=plumbs))
+        yield from self._vehicle_trail.add(rows["t"] - self._start, position[:, :3])
 
     def _hand(self, rows: Rows) -> Iterator[Chunk]:
         """Yield what holds while engaged; in rows that are not engaged it is empty, which clears it."""
         engaged = rows["phase"] == Phase.ENGAGED
-        times = rows["t"] - self._start
-        column = time_column(times)
+        column = time_column(rows["t"], self._start)
         lengths = engaged.astype(np.int32)
         shown = rows[engaged]
         hand, seen = shown["p_h"][:, :3], (shown["p_h"] - shown["error"])[:, :3]
@@ -120,7 +119,7 @@ class Motion:
         if not engaged.all():
             self._hand_trail.lift()
         if len(shown):
-            yield from self._hand_trail.add(times[engaged], hand)
+            yield from self._hand_trail.add(shown["t"] - self._start, hand)
 
     def _world_force(self, rows: Rows) -> Numbers:
         """Return the force last rendered on the hand at each row, (n, 3), world, N."""

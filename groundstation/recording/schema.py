@@ -15,9 +15,10 @@ from groundstation.recording.entities import SCENE
 from groundstation.recording.lanes import LANES
 
 APPLICATION = "groundstation"
+# 4: all that a tick of the servo was made from, to the last bit.
 # 3: every attitude and body rate that the vehicle tells, and commands and answers as numbers.
-# 2: what stands around equations (4) and (5), and the vehicle's own distance sensors. A reader of 3 reads 1 and 2.
-VERSION = 3
+# 2: what stands around equations (4) and (5), and the vehicle's own distance sensors. A reader of 4 reads 1 to 3.
+VERSION = 4
 TIMELINE = "flight_time"
 
 # Properties of the whole flight.
@@ -64,16 +65,10 @@ HANDLE_READY = Quantity(
     "on change",
     "Whether samples come, and know where they are",
 )
-HANDLE_CLOCK = Quantity(
-    "/handle/clock",
-    ("device time", "tick"),
-    "s, count",
-    "servo",
-    "The device's own time of the sample; servo's tick",
-)
 CENTRED = Quantity(
     "/handle/centred", ("centred",), "flag", "on change", "Near enough to its centre to engage"
 )
+SAMPLE_AGE = Quantity("/handle/age", ("age",), "s", "servo", "From the handle's sample to the tick")
 HANDLE_FORCE = Quantity("/handle/force", _AXES, "N", "servo", "Force rendered on the hand, handle frame")
 HANDLE_ENERGY = Quantity(
     "/handle/energy",
@@ -177,6 +172,20 @@ RAW_ATTITUDE = Quantity(
 RAW_RATES = Quantity(
     "/vehicle/raw/rates", ("roll", "pitch", "yaw"), "rad/s", "as told", "Body rates about the same axes"
 )
+UNTRUSTED = Quantity(
+    "/vehicle/untrusted",
+    (*_POSE, *(f"{axis} rate" for axis in _POSE)),
+    "m, rad, m/s, rad/s",
+    "while not valid",
+    "Position and velocity, world, that the vehicle told and did not trust itself: elsewhere they are not known",
+)
+STATUS = Quantity(
+    "/vehicle/status",
+    ("connected", "armed", "in air", "mode", "stream"),
+    "code",
+    "on change",
+    "What the lanes show in words: 1 or 0, `FlightMode`, `Stream`",
+)
 COMMANDED = Quantity(
     "/operator/command",
     ("number", "kind", "value"),
@@ -250,6 +259,29 @@ SERVO_TIME = Quantity(
 )
 SERVO_TICKS = Quantity("/servo/ticks", ("run", "missed"), "ticks", "2 Hz", "Since the servo's start")
 
+TICK = Quantity(
+    "/servo/tick",
+    ("tick", "dt", "fitted", "read", "homed", "present"),
+    "ticks, s, times, 1 or 0",
+    "on change",
+    "The tick's number; time since the last by the loop's pace; how often the controller was fitted to a device; "
+    "whether that was read, is homed, took the force",
+)
+KNOWN = Quantity(
+    "/servo/known",
+    ("state", "status", "ranges", "command", "commands"),
+    "s, commands",
+    "on change",
+    "What the tick knew: monotonic times of the newest vehicle state, status, ranges and command; commands so far",
+)
+LIMITS = Quantity(
+    "/servo/device",
+    ("axes", "workspace", "force limit", "stiffness limit", "rate"),
+    "axes, m, N, N/m, Hz",
+    "on change",
+    "What the device can do, `drivers.device.DeviceInfo`",
+)
+
 TARGET_DISTANCE = Quantity(
     "/mission/target_distance", ("distance",), "m", "mission", "To the mission's target"
 )
@@ -260,17 +292,18 @@ LEGS = Quantity("/mission/legs", ("flown", "of"), "legs", "mission", "How far al
 COLLISIONS = Quantity("/mission/collisions", ("collisions",), "contacts", "mission", "With obstacles, so far")
 
 QUANTITIES: tuple[Quantity, ...] = (
-    HANDLE_POSITION, HANDLE_VELOCITY, HANDLE_FORCE, HANDLE_ENERGY, HANDLE_BUTTONS, HANDLE_READY,
-    HANDLE_CLOCK, CENTRED, SETPOINT_NUMBER,
+    HANDLE_POSITION, HANDLE_VELOCITY, SAMPLE_AGE, HANDLE_FORCE, HANDLE_ENERGY, HANDLE_BUTTONS,
+    HANDLE_READY, CENTRED, SETPOINT_NUMBER,
     P_H, P_H_RATE, ERROR, V_REF, V_SAFE, V_C, K1, PHASE_MARGIN, SHARES,
     FORCE_CUE, ENVIRONMENT_CUE, MISMATCH_CUE, GUARD_CUE, DAMPING_CUE, CUE_SIZES, CUES_ON,
     PREDICTED, PREDICTED_VELOCITY, STOP, PUSH,
     *REFERENCES, *EXECUTED,
-    POSITION, VELOCITY, ATTITUDE, RAW_ATTITUDE, RAW_RATES, SYSTEM_ID, BOOT_TIME, BATTERY, VOLTAGE, HEALTH_BITS,
+    POSITION, VELOCITY, UNTRUSTED, ATTITUDE, RAW_ATTITUDE, RAW_RATES, SYSTEM_ID, BOOT_TIME,
+    BATTERY, VOLTAGE, HEALTH_BITS, STATUS,
     RING, RANGES, RANGE_LIMIT,
     STATE_AGE, HANDLE_AGE, ROUND_TRIP, RECKONED, SILENCE,
     LOSS, GATE,
-    SERVO_RATE, SERVO_LATE, SERVO_RUN, REALTIME, SERVO_TIME, SERVO_TICKS,
+    SERVO_RATE, SERVO_LATE, SERVO_RUN, REALTIME, SERVO_TIME, SERVO_TICKS, TICK, KNOWN, LIMITS,
     TARGET_DISTANCE, CLEARANCE, LEGS, COLLISIONS,
     COMMANDED, ANSWERED,
 )  # fmt: skip

@@ -12,7 +12,7 @@ from groundstation.recording.about import about_device, about_flight
 from groundstation.recording.batch import Batch
 from groundstation.recording.blueprint import blueprint
 from groundstation.recording.changes import Changes
-from groundstation.recording.columns import Heartbeats, OnChange, number_chunks
+from groundstation.recording.columns import Heartbeats, OnChange, number_chunks, number_columns
 from groundstation.recording.echoes import Echoes
 from groundstation.recording.feed import LiveFeed
 from groundstation.recording.file import FlightFile, RecordingError
@@ -59,7 +59,7 @@ class Translator:
         self._start = start
         self._changes = Changes(start)
         self._heartbeats = Heartbeats()
-        self._seldom = OnChange()
+        self._on_change = OnChange()
         self._motion = Motion(start, heading=run.settings.mapping.frame == "heading")
         self._echoes = Echoes(start)
         self._gauges = Gauges(start, run.settings.shield)
@@ -68,15 +68,15 @@ class Translator:
 
     def opening(self) -> Iterator[Item]:
         """Yield what is logged before all else."""
-        yield from about_flight(self._run)
+        yield from about_flight(self._run, self._start)
         yield from static_styles()
         yield from static_scene(self._run.mission)
 
     def items(self, batch: Batch) -> Iterator[Item]:
         """Yield a batch's items."""
-        yield from number_chunks(batch, self._start)
+        yield from number_chunks(number_columns(batch), self._start)
+        yield from number_chunks(self._on_change.columns(batch), self._start)
         yield from self._heartbeats.chunks(batch, self._start)
-        yield from self._seldom.chunks(batch, self._start)
         yield from self._changes.chunks(batch)
         yield from self._changes.texts(batch)
         yield from self._motion.chunks(batch)

@@ -25,6 +25,7 @@ from groundstation.pilot.guest import load_controller
 from groundstation.recording.live import find_viewer, has_display, start_viewer
 from groundstation.recording.session import Session
 from groundstation.replay.changes import channel_for, mission_for, settings_for
+from groundstation.replay.check import check
 from groundstation.replay.figures import Row, fingerprint, rows
 from groundstation.replay.flying import RATE_HZ, NotCoupledError, Pace, Replay, What
 from groundstation.replay.records import ReplayRecorder
@@ -62,6 +63,10 @@ def run(asked: argparse.Namespace) -> int:
     Raises:
         InputError: The recording, a setting, a file or the viewer cannot be had.
     """
+    if asked.check:
+        words, code = check(asked)
+        print(words)
+        return code
     if asked.speed is not None and not _SLOWEST <= asked.speed <= _FASTEST:
         raise InputError(
             f"--speed {asked.speed:g}: give {_SLOWEST:g} to {_FASTEST:g}, or leave it out to fly as fast as it goes."

@@ -8,7 +8,8 @@ from pathlib import Path
 HELP = "a recorded hand through today's pilot and simulator: what if"
 DESCRIPTION = """\
 Fly a recorded hand once more, in virtual time: the handle's very motion through today's pilot and the simulator, with
-the recording's mission, wind, seed and settings, or with others. What came out is set beside what was recorded."""
+the recording's mission, wind, seed and settings, or with others. What came out is set beside what was recorded.
+With --check, today's pilot runs every tick again on its recorded inputs, and must decide the same to the last bit."""
 EXAMPLES = """\
 examples:
   groundstation replay                                         the newest flight, once more
@@ -17,8 +18,10 @@ examples:
   groundstation replay FLIGHT.rrd --channel delay=0.15,loss=0.05 --wind calm
   groundstation replay FLIGHT.rrd --speed 1 --rerun            in its own time, in the viewer
   groundstation replay FLIGHT.rrd --out what_if.rrd            as a recording, for review and report --compare
+  groundstation replay FLIGHT.rrd --check                      has the pilot's every decision stayed the same?
+  groundstation replay FLIGHT.rrd --check --set control.k1=[2,2,2,1]   where does it decide otherwise first?
 
-exit codes: 0 done, 1 the simulated vehicle did not take off, 2 bad input, 130 stopped
+exit codes: 0 done, 1 a check found a difference, or the simulated vehicle did not take off, 2 bad input, 130 stopped
 """
 RUN = "groundstation.replay.command:run"
 
@@ -31,6 +34,11 @@ def fill(parser: argparse.ArgumentParser) -> None:
         type=Path,
         metavar="FLIGHT",
         help="a recording, or its number in 'review --list' (default: the newest)",
+    )
+    parser.add_argument(
+        "--check",
+        action="store_true",
+        help="run the pilot's ticks again on their recorded inputs; fly nothing",
     )
     pilot = parser.add_argument_group("the pilot (default: as recorded)")
     pilot.add_argument("--config", type=Path, metavar="FILE", help="settings in place of the recorded ones")

@@ -46,6 +46,11 @@ class Collector:
         """Return a sender for a topic."""
         return _Sender(self, topic)
 
+    def taken(self) -> Batch:
+        """Return what was sent since the last time."""
+        batch, self.batch = self.batch, Batch()
+        return batch
+
 
 class _Sender:
     def __init__(self, collector: Collector, topic: Topic[Any]) -> None:
@@ -97,8 +102,7 @@ class ReplayRecorder:
 
     def flush(self) -> None:
         """Hand over what has come since the last time."""
-        batch, self._collector.batch = self._collector.batch, Batch()
-        self._session.take(batch)
+        self._session.take(self._collector.taken())
 
     def _progress(self, sample: Sample, *, coupled: bool) -> MissionProgress:
         x, y, z, _ = sample.p

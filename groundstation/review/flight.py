@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -84,6 +85,48 @@ class Flight:
         order = np.argsort(t, kind="stable")
         return Series(t[order], numbers[order])
 
+    def clock(self, quantity: Quantity) -> Numbers:
+        """Return the times of a quantity's rows on the clock of the machine that flew, (n,), s: the very floats.
+
+        Raises:
+            InputError: It was recorded before schema 4, which does not say when it began on that clock.
+        """
+        since = [_nanoseconds(chunk) for chunk in self._timed.get(quantity.path, ())]
+        return (np.sort(np.concatenate([np.empty(0, np.int64), *since])) + self._start_ns) / 1e9
+
+    @property
+    def start(self) -> float:
+        """When the run was started on that clock, s.
+
+        Raises:
+            InputError: It was recorded before schema 4.
+        """
+        return self._start_ns / 1e9
+
+    def held(self, quantity: Quantity, t: Numbers) -> Numbers:
+        """Return what a quantity that is recorded on a change was at given times, (n, parts); NaN before the first.
+
+        Args:
+            quantity: What is asked for.
+            t: (n,), s on the clock of the machine that flew.
+
+        Raises:
+            InputError: It was recorded before schema 4.
+        """
+        unknown = np.full((1, len(quantity.parts)), np.nan)
+        rows = np.concatenate((unknown, self.series(quantity).values))
+        return rows[np.searchsorted(self.clock(quantity), t, side="right")]
+
+    @functools.cached_property
+    def _start_ns(self) -> int:
+        start = self._facts().get("start_ns")
+        if start is None:
+            raise InputError(
+                f"{self.path}: was recorded before schema 4 and lacks what each tick was made from; "
+                "leave out --check to fly its hand in the simulator."
+            )
+        return int(start)
+
     def states(self, lane: Lane) -> list[tuple[float, str]]:
         """Return a lane's changes: when (s), and to what."""
         return sorted((t, words[_STATE]) for t, words in self._words(lane.path, _STATE))
@@ -156,4 +199,8 @@ def properties_of(chunks: list[Chunk]) -> dict[str, Any]:
 
 def _seconds(chunk: Chunk) -> Numbers:
     """Return the times of a chunk's rows, s, on the timeline."""
-    return chunk.to_record_batch().column(schema.TIMELINE).cast("int64").to_numpy() * 1e-9
+    return np.asarray(_nanoseconds(chunk) * 1e-9, dtype=float)
+
+
+def _nanoseconds(chunk: Chunk) -> npt.NDArray[np.int64]:
+    return chunk.to_record_batch().column(schema.TIMELINE).cast("int64").to_numpy()

@@ -1,105 +1,166 @@
-"""What is wrong, as the operator has to deal with it: each thing once, new until acknowledged, heard as well as seen.
+"""The alarms: what is wrong in three priorities, each told once and kept until seen; when the bell rings. Pure.
 
-Three priorities, as in a cockpit (FAA AC 25.1322-1): an alarm needs the operator now, a caution soon, an advisory is
-to be known. Pure: fed with what is wrong at a moment; time comes with it.
+A condition that comes and goes is one alarm with a count. One that has ended stays to be seen: an alarm until it is
+acknowledged, a caution for a moment; an advisory goes with its cause. What has been acknowledged is told anew only
+when it becomes more serious, or comes back after a while.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import NamedTuple
 
 from groundstation.messages import Severity
 
-# An alarm is rung again until somebody has said that he knows, s.
-AGAIN_S = 4.0
-# What comes back so soon was not away: it stays acknowledged, s.
-BACK_S = 5.0
+# The bell is repeated this often while an alarm lasts that nobody has acknowledged, s.
+RING_AGAIN_S = 3.0
+# A caution that has ended is told for so long, s.
+CAUTION_KEPT_S = 5.0
+# What comes back sooner is the same trouble, which flutters, s.
+FLUTTER_S = 5.0
+# More that has ended and was never acknowledged is forgotten, oldest first.
+_KEPT = 20
 
-PRIORITIES = {Severity.ALARM: "ALARM", Severity.WARNING: "CAUTION", Severity.INFO: "ADVISORY"}
 
-
-class Alert(NamedTuple):
-    """Something that is wrong at a moment.
+class Condition(NamedTuple):
+    """Something that is so now.
 
     Attributes:
-        severity: How wrong.
-        key: What it is, the same from moment to moment.
-        text: In a sentence, with the figures of the moment.
+        key: The same for the same trouble, whatever its figures.
+        severity: Alarm, caution (WARNING) or advisory (INFO).
+        text: One sentence.
+        t: When it was told, s, where it was told: told again, it counts again. NaN for what is seen to be so.
     """
 
-    severity: Severity
     key: str
+    severity: Severity
     text: str
+    t: float = math.nan
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True)
 class Alarm:
-    """Something that has been wrong for a while.
+    """A condition with its story.
 
     Attributes:
-        severity: How wrong it is now.
-        peak: How wrong it has been since it began; worse than that, it is new again.
-        key: What it is.
-        text: In a sentence, as it is now.
-        since: When it began, s.
-        seen: When it was last so, s.
-        acknowledged: The operator knows.
+        began: When it last began, s.
+        ended: When it ended, s; infinite while it lasts.
+        count: How often it has begun since it was last acknowledged.
+        seen: The operator has acknowledged it.
     """
 
-    severity: Severity
-    peak: Severity
     key: str
+    severity: Severity
     text: str
-    since: float
-    seen: float
-    acknowledged: bool = False
+    told: float
+    began: float
+    ended: float = math.inf
+    count: int = 1
+    seen: bool = False
 
     @property
-    def rank(self) -> tuple[bool, int, float]:
-        """Its place in the list, the first the lowest: what is new, then what is grave, then what is recent."""
-        return self.acknowledged or self.severity is Severity.INFO, -self.severity, -self.since
+    def active(self) -> bool:
+        """It lasts."""
+        return self.ended == math.inf
 
 
 class Alarms:
-    """Keeps what is wrong from moment to moment.
+    """Keeps the alarms from frame to frame.
 
     Attributes:
-        muted: No bell is to be rung.
+        muted: The bell does not ring.
     """
 
     def __init__(self) -> None:
+        self._alarms: dict[str, Alarm] = {}
+        self._rung = -math.inf
+        self._due = False
         self.muted = False
-        self._known: dict[str, Alarm] = {}
-        self._rung = -AGAIN_S
-        self._new = False
 
-    def look(self, alerts: Iterable[Alert], now: float) -> tuple[Alarm, ...]:
-        """Take note of all that is wrong at `now` (s) and return it, the most urgent first."""
-        for alert in alerts:
-            before = self._known.get(alert.key)
-            severity, key, text = alert
-            if before is None or severity > before.peak:
-                self._known[key] = Alarm(severity, severity, key, text, since=now, seen=now)
-                self._new |= severity is not Severity.INFO
-            elif before.seen < now:
-                self._known[key] = replace(before, severity=severity, text=text, seen=now)
-        self._known = {key: alarm for key, alarm in self._known.items() if now - alarm.seen <= BACK_S}
-        return tuple(sorted((a for a in self._known.values() if a.seen == now), key=lambda alarm: alarm.rank))
+    def look(self, conditions: Iterable[Condition], now: float) -> None:
+        """Take note of all that is so at a time, s; of one key the most serious."""
+        present: dict[str, Condition] = {}
+        for condition in conditions:
+            other = present.get(condition.key)
+            if other is None or condition.severity >= other.severity:
+                present[condition.key] = condition
+        for condition in present.values():
+            self._present(condition, now)
+        for alarm in self._alarms.values():
+            if alarm.active and alarm.key not in present:
+                alarm.ended = now
+        self._forget(now)
 
-    def acknowledge(self) -> bool:
-        """Take all that is wrong as known; return False where nothing is new."""
-        new = [alarm for alarm in self._known.values() if not alarm.rank[0]]
-        self._known |= {alarm.key: replace(alarm, acknowledged=True) for alarm in new}
-        return bool(new)
+    def acknowledge(self) -> int:
+        """Take all as seen; return how many were not."""
+        unseen = [alarm for alarm in self._alarms.values() if not alarm.seen]
+        for alarm in unseen:
+            alarm.seen = True
+        self._due = False
+        self._alarms = {key: alarm for key, alarm in self._alarms.items() if alarm.active}
+        return sum(alarm.severity > Severity.INFO for alarm in unseen)
 
-    def rings(self, now: float) -> bool:
-        """Say whether the bell is to be rung at `now` (s): for what is new, and for alarms again and again."""
-        alarming = (alarm for alarm in self._known.values() if alarm.severity is Severity.ALARM)
-        urgent = any(alarm.seen == now and not alarm.acknowledged for alarm in alarming)
-        due = self._new or (urgent and now - self._rung >= AGAIN_S)
-        self._new = False
+    def ring(self, now: float) -> bool:
+        """Say whether to ring the bell now: for each new alarm, and again while it lasts and nobody has seen it."""
+        waiting = any(
+            alarm.severity is Severity.ALARM and alarm.active and not alarm.seen
+            for alarm in self._alarms.values()
+        )
+        due = self._due or (waiting and now - self._rung >= RING_AGAIN_S)
+        self._due = False
         if due:
             self._rung = now
         return due and not self.muted
+
+    def listed(self) -> list[Alarm]:
+        """Return all, the most pressing first: not seen, serious, lasting, new."""
+        return sorted(
+            self._alarms.values(),
+            key=lambda alarm: (alarm.seen, -alarm.severity, not alarm.active, -alarm.began),
+        )
+
+    def first(self) -> Alarm | None:
+        """Return what the operator should read now: an alarm or a caution not seen yet, else an alarm that lasts."""
+        pressing = (
+            alarm
+            for alarm in self.listed()
+            if (not alarm.seen and alarm.severity is Severity.WARNING)
+            or (alarm.severity is Severity.ALARM and (not alarm.seen or alarm.active))
+        )
+        return next(pressing, None)
+
+    def _present(self, condition: Condition, now: float) -> None:
+        key, severity, text, told = condition
+        alarm = self._alarms.get(key)
+        if alarm is None:
+            self._alarms[key] = Alarm(key, severity, text, told, now)
+            self._due |= severity is Severity.ALARM
+            return
+        again = not alarm.active or told > alarm.told
+        worse = severity > alarm.severity
+        if worse or (again and now - min(alarm.ended, now) > FLUTTER_S):
+            alarm.seen = False
+            self._due |= severity is Severity.ALARM
+        if again:
+            alarm.count, alarm.began = alarm.count + 1, now
+        # What was an alarm that nobody has seen yet is one until somebody has.
+        alarm.severity = severity if alarm.seen else max(severity, alarm.severity)
+        alarm.text, alarm.told, alarm.ended = text, told, math.inf
+
+    def _forget(self, now: float) -> None:
+        """Let go what has ended and need not be told any more."""
+
+        def kept(alarm: Alarm) -> bool:
+            if alarm.active:
+                return True
+            age = now - alarm.ended
+            if alarm.seen or alarm.severity is Severity.WARNING:
+                return age <= CAUTION_KEPT_S
+            return alarm.severity is Severity.ALARM
+
+        left = [alarm for alarm in self._alarms.values() if kept(alarm)]
+        ended = sorted((alarm for alarm in left if not alarm.active), key=lambda alarm: alarm.ended)
+        over = {alarm.key for alarm in ended[: max(len(ended) - _KEPT, 0)]}
+        self._alarms = {alarm.key: alarm for alarm in left if alarm.key not in over}

@@ -1,166 +1,120 @@
-"""What is wrong now, in sentences, and else what to do next."""
+"""What is wrong now, as conditions with a priority: from the records, the processes, and what was said."""
 
 from __future__ import annotations
 
-import math
+import re
 from collections.abc import Iterator
 
-from groundstation.messages import MappingMode, Phase, Severity
-from groundstation.training.director import Stage
+from groundstation.messages import Phase, Preset, Severity
+from groundstation.pilot.presets import PRESETS
 from groundstation.tui import judge
-from groundstation.tui.acts import armed, in_air
-from groundstation.tui.alarms import Alert
+from groundstation.tui.acts import in_air
+from groundstation.tui.alarms import Condition
 from groundstation.tui.frame import REPORT_STALE_S, STATUS_STALE_S, Frame
-from groundstation.tui.notes import from_event, words
+from groundstation.tui.notes import from_event
 from groundstation.tui.rows import quantity, span_of_time
 
-_RECENT_S = 5.0
+# What was said counts as being so for this long, s, and no more of it is looked through.
+_RECENT_S, _RECENT = 5.0, 12
 _CONSEQUENCES = {
     "pilot": "no force, and the vehicle is told to hold",
     "link": "nothing reaches the vehicle; its own failsafe holds it",
     "sim": "the simulated vehicle has gone",
     "recorder": "this flight is no longer recorded",
 }
-# What the guard keeps away from beside obstacles.
-_BOUNDS = {
-    "floor": "the ground",
-    "ceiling": "the ceiling",
-    "fence": "the fence",
-    "sensor": "what its sensors see",
-}
+_FIGURES = re.compile(r"[\d.]+")
 
 
-def alerts(frame: Frame) -> Iterator[Alert]:
-    """Yield all that is wrong, what explains the rest first; at the end what keeps the hand from being followed."""
-    yield from _processes(frame)
-    yield from _link(frame)
-    yield from _state(frame)
-    yield from _device(frame)
-    yield from _said(frame)
-    if hampered := _hampered(frame):
-        yield Alert(Severity.INFO, "hampered", hampered)
+def conditions(frame: Frame) -> list[Condition]:
+    """Return all that is wrong, and what is worth knowing, of a frame."""
+    found = (_processes, _link, _state, _device, _servo, _advice, _said)
+    return [condition for look in found for condition in look(frame)]
 
 
-def _processes(frame: Frame) -> Iterator[Alert]:
+def _processes(frame: Frame) -> Iterator[Condition]:
     for role, consequence in _CONSEQUENCES.items():
         state = frame.states.get(role)
-        if state == "ended":
-            yield Alert(Severity.ALARM, role, f"{role} has ended: {consequence}.")
-        elif state == "silent":
-            yield Alert(Severity.ALARM, role, f"{role} does not answer: {consequence}.")
+        if state in {"ended", "silent"}:
+            how = "has ended" if state == "ended" else "does not answer"
+            yield Condition(f"process {role}", Severity.ALARM, f"{role} {how}: {consequence}.")
 
 
-def _link(frame: Frame) -> Iterator[Alert]:
+def _link(frame: Frame) -> Iterator[Condition]:
     status = frame.snapshot.status
     if status is None or not status.heard_t:
         return
     age = judge.link_age(status, frame.now)
     severity = judge.link(status, frame.now, frame.run.settings.safety.link_warning_s)
     if severity is Severity.ALARM:
-        yield Alert(
-            severity, "link silent", f"Link lost: the vehicle has been silent for {span_of_time(age)}."
-        )
+        yield Condition("link", severity, f"Link lost: the vehicle has been silent for {span_of_time(age)}.")
     elif severity is Severity.WARNING:
-        yield Alert(severity, "link silent", f"The vehicle has been silent for {span_of_time(age)}.")
+        yield Condition("link", severity, f"The vehicle has been silent for {span_of_time(age)}.")
     elif frame.age(status) > STATUS_STALE_S:
-        age_words = span_of_time(frame.age(status))
-        yield Alert(Severity.WARNING, "link report", f"No word from the link process for {age_words}.")
-    if judge.battery(status.battery) is not Severity.INFO:
-        charge = quantity(100 * status.battery, "%", 0)
-        yield Alert(judge.battery(status.battery), "battery", f"Battery at {charge}: land.")
+        text = f"No word from the link process for {span_of_time(frame.age(status))}."
+        yield Condition("link process", Severity.WARNING, text)
+    battery = judge.battery(status.battery)
+    if battery is not Severity.INFO:
+        yield Condition("battery", battery, f"Battery at {quantity(100 * status.battery, '%', 0)}: land.")
 
 
-def _state(frame: Frame) -> Iterator[Alert]:
+def _state(frame: Frame) -> Iterator[Condition]:
     vehicle = frame.snapshot.vehicle
     if vehicle is None or not in_air(frame.snapshot):
         return
-    if frame.age(vehicle) > frame.run.settings.safety.state_stale_s:
-        old = span_of_time(frame.age(vehicle))
-        yield Alert(Severity.ALARM, "position", f"Position is {old} old: do not trust map or force.")
+    age = frame.age(vehicle)
+    if age > frame.run.settings.safety.state_stale_s:
+        text = f"Position is {span_of_time(age)} old: do not trust map or force."
+        yield Condition("position", Severity.ALARM, text)
     elif not vehicle.valid:
-        yield Alert(Severity.ALARM, "position", "The vehicle's position is not valid.")
+        yield Condition("position", Severity.ALARM, "The vehicle's position is not valid.")
 
 
-def _device(frame: Frame) -> Iterator[Alert]:
+def _device(frame: Frame) -> Iterator[Condition]:
     device = frame.snapshot.device
     if device is None:
         return
     if frame.age(device) > REPORT_STALE_S:
-        silent = span_of_time(frame.age(device))
-        yield Alert(Severity.WARNING, "device", f"No word from the haptic device for {silent}.")
+        text = f"No word from the haptic device for {span_of_time(frame.age(device))}."
+        yield Condition("device", Severity.WARNING, text)
     elif not device.present:
         text = "The haptic device is gone: plug it in again; the hand is uncoupled."
-        yield Alert(Severity.ALARM, "device", text)
+        yield Condition("device", Severity.ALARM, text)
     elif not device.homed:
         text = "The haptic device is not homed: move the handle through its whole range."
-        yield Alert(Severity.WARNING, "device", text)
+        yield Condition("device", Severity.WARNING, text)
 
 
-def _said(frame: Frame) -> Iterator[Alert]:
-    recent = [from_event(event) for event in frame.snapshot.events[-8:]]
-    for note in reversed([*recent, *frame.notes]):
-        if note.severity is not Severity.INFO and frame.now - note.t < _RECENT_S:
-            yield Alert(note.severity, note.text, note.text)
+def _servo(frame: Frame) -> Iterator[Condition]:
+    servo = frame.snapshot.servo
+    if servo is None or frame.age(servo) > REPORT_STALE_S:
+        return
+    if judge.lateness(servo) is Severity.ALARM:
+        late = quantity(1000 * servo.late_p99, "ms", 1)
+        yield Condition("servo", Severity.WARNING, f"The servo is late by {late} (p99): the force is rough.")
+    if not servo.realtime:
+        text = "The servo has no real-time priority: a busy machine makes it late."
+        yield Condition("priority", Severity.INFO, text)
 
 
-def next_step(frame: Frame) -> str:
-    """Say what the operator can do next."""
-    snapshot = frame.snapshot
-    status, pilot = snapshot.status, frame.pilot
-    if status is None or not status.connected:
-        return f"Waiting for the vehicle at {frame.run.url} …"
-    if not armed(snapshot):
-        return "Ready on the ground. A arms."
-    if not in_air(snapshot):
-        return "Armed on the ground. T takes off."
-    if pilot is None:
-        return "In the air. Waiting for the pilot process …"
-    if pilot.phase == Phase.ENGAGED:
-        return _engaged_hint(frame)
-    if pilot.phase == Phase.ENGAGING:
-        return "Engaging: the vehicle is asked to follow …"
-    reason = words(pilot.reason)
-    uncoupled = f"Hand uncoupled ({reason})." if reason else "In the air, hand uncoupled."
-    return f"{uncoupled} {'E engages.' if pilot.centred else 'Centre the handle, then E engages.'}"
-
-
-def _engaged_hint(frame: Frame) -> str:
-    mission, still = frame.run.mission, _standstill(frame)
-    progress, target = frame.snapshot.progress, distance_to_target(frame)
-    if progress is not None and words(progress.stage) == Stage.RETURNING.value and math.isfinite(target):
-        return f"Engaged. The target is held: mission flown. {still}, L lands."
-    if mission is not None and mission.target is not None and math.isfinite(target):
-        return f"Engaged. Target {quantity(target, 'm', 1)} away. {still}, X releases."
-    return f"Engaged. {still}, X releases, H holds."
-
-
-def _hampered(frame: Frame) -> str:
-    """Say why the vehicle does not do what the hand does, or ""."""
+def _advice(frame: Frame) -> Iterator[Condition]:
+    """What is not wrong, but is to be known."""
     pilot = frame.pilot
-    if pilot is None:
-        return ""
-    if pilot.clutched:
-        return "Clutch: the handle moves nothing. C takes hold again."
-    if pilot.waiting:
-        return "Centre the handle to take hold."
+    if pilot is None or pilot.phase != Phase.ENGAGED:
+        return
+    if pilot.on_leash:
+        yield Condition("leash", Severity.INFO, "On the leash: the vehicle does not keep up with the hand.")
     if frame.guarded_by:
-        return f"Guard: it keeps the vehicle away from {_BOUNDS.get(frame.guarded_by, frame.guarded_by)}."
-    return (
-        "On the leash: the vehicle does not keep up, the force shows where it is." if pilot.on_leash else ""
-    )
+        yield Condition("guard", Severity.INFO, f"The guard acts: {frame.guarded_by}.")
+    if not PRESETS[Preset(pilot.preset)].guard:
+        yield Condition("no guard", Severity.INFO, "No guard: nothing keeps the vehicle from obstacles.")
+    if min(pilot.gain_share, pilot.speed_share) < 1.0:
+        gains, speed = (quantity(100 * share, "%", 0) for share in (pilot.gain_share, pilot.speed_share))
+        yield Condition("poor link", Severity.INFO, f"The link leaves {gains} of gains, {speed} of speed.")
 
 
-def _standstill(frame: Frame) -> str:
-    """Say how the hand gets the vehicle to stand, or itself some way to go."""
-    pilot = frame.pilot
-    if pilot is not None and pilot.mapping == MappingMode.POSITION:
-        return "C clutches to reach on"
-    return "Space lets go of the stick" if frame.stick is not None else "The handle's centre is standstill"
-
-
-def distance_to_target(frame: Frame) -> float:
-    """Return the way to the mission's target, m; NaN where there is none."""
-    mission, vehicle = frame.run.mission, frame.snapshot.vehicle
-    if mission is None or mission.target is None or vehicle is None:
-        return math.nan
-    return math.dist(mission.target.position, tuple(vehicle.position)[:3])
+def _said(frame: Frame) -> Iterator[Condition]:
+    """What was told as a warning or an alarm a moment ago; the same with other figures is the same."""
+    recent = [from_event(event) for event in frame.snapshot.events[-_RECENT:]]
+    for note in [*recent, *frame.notes]:
+        if note.severity is not Severity.INFO and frame.now - note.t < _RECENT_S:
+            yield Condition(f"said {_FIGURES.sub('#', note.text)}", note.severity, note.text, note.t)

@@ -11,7 +11,6 @@ import importlib
 import signal
 import time
 from collections.abc import Callable, Iterable
-from dataclasses import replace
 from typing import ClassVar, cast
 
 from textual.app import SystemCommand
@@ -26,7 +25,7 @@ from groundstation.training.director import Director
 from groundstation.training.follower import MissionFollower
 from groundstation.tui.acts import ACTS, URGENT, Act, coupled, in_air
 from groundstation.tui.alarms import Alarms
-from groundstation.tui.alerts import alerts
+from groundstation.tui.alerts import conditions
 from groundstation.tui.checks import red
 from groundstation.tui.choices import CHOICES, PRESETS_EXPLAINED, Choice
 from groundstation.tui.commanding import Commanding
@@ -35,6 +34,7 @@ from groundstation.tui.guarding import GuardWatch
 from groundstation.tui.hand import Hand, StickSender
 from groundstation.tui.keepalive import Keepalive
 from groundstation.tui.milestones import Milestones
+from groundstation.tui.pace import PaintPace
 from groundstation.tui.pages import PAGES, PAGES_BY_NAME
 from groundstation.tui.releases import PREFIX, driver_for
 from groundstation.tui.screens.dialog import Confirm
@@ -66,6 +66,9 @@ def _everywhere() -> list[BindingType]:
         *urgent,
         *pages,
         *releases,
+        Binding("o,O", "acknowledge", "Alarms seen", show=False),
+        Binding("b,B", "mute", "Bell on/off", show=False),
+        Binding("ctrl+t", "next_theme", "Next theme", show=False, priority=True),
         Binding("f1", "help", "Help", show=False),
         Binding("ctrl+c,ctrl+q", "quit", "Quit", show=False, priority=True),
     ]
@@ -105,7 +108,8 @@ class FlightApp(Commanding):
         self.hand = Hand()
         self._supervisor, self._stick, self._clock = supervisor, stick, clock
         self._guard = GuardWatch()
-        self._track, self._history, self._alarms = Track(), History(), Alarms()
+        self._track, self._history = Track(), History()
+        self._alarms, self._pace = Alarms(), PaintPace(run.settings.rates.screen)
         self._started = self._snapshot.t
         self._next_poll = self._next_look = 0.0
         self._keepalive = Keepalive(self._send_stick, clock)
@@ -139,7 +143,8 @@ class FlightApp(Commanding):
         snapshot = self._snapshot = self._reader.snapshot()
         if self._follower is not None:
             self._follower.look(snapshot)
-        if snapshot.t >= self._next_poll:
+        polled = snapshot.t >= self._next_poll
+        if polled:
             self._next_poll = snapshot.t + _POLL_S
             self._supervisor.poll()
         for note in self._answers.take(snapshot):
@@ -151,12 +156,14 @@ class FlightApp(Commanding):
             self._track.add(east, north, up, snapshot.vehicle.t)
         self._history.add(snapshot, stale_s)
         frame = self._frame(snapshot)
-        alarms = self._alarms.look(alerts(frame), snapshot.t)
-        if self._alarms.rings(snapshot.t):
-            self.bell()
-        frame = self._latest = replace(frame, alarms=alarms, muted=self._alarms.muted)
-        # What stands below a page is not seen, what stands below a dialog is.
-        (self._page or self._flight).show(frame)
+        if polled:
+            self._alarms.look(conditions(frame), snapshot.t)
+            if self._alarms.ring(snapshot.t):
+                self.bell()
+        self._latest = frame
+        if self._pace.due(self._clock()):
+            # What stands below a page is not seen, what stands below a dialog is.
+            (self._page or self._flight).show(frame)
         if snapshot.t >= self._next_look:
             self._next_look = snapshot.t + _LOOK_S
             self._look_around(frame)
@@ -190,7 +197,9 @@ class FlightApp(Commanding):
             notes=tuple(self._answers.notes),
             track=self._track,
             history=self._history,
-            figures=self._follower.director.figures if self._follower else None,
+            figures=self._follower.director.figures if self._follower is not None else None,
+            alarms=self._alarms,
+            paint_hz=self._pace.rate,
         )
 
     def _send_stick(self) -> None:
@@ -240,19 +249,17 @@ class FlightApp(Commanding):
         self.hand.centre()
         self.exit(code)
 
+    def action_next_theme(self) -> None:
+        """Change to the next theme: dark, light, high contrast."""
+        self.theme = next_theme(self.theme)
+
     def action_acknowledge(self) -> None:
-        """Take all that is wrong as known: it is no longer reversed nor rung."""
-        if not self._alarms.acknowledge():
-            self.notify("Nothing new is wrong.", timeout=2.0)
+        """Take all alarms as seen."""
+        self._alarms.acknowledge()
 
     def action_mute(self) -> None:
-        """Ring no bell, or ring it again."""
+        """Silence the bell, or let it ring again."""
         self._alarms.muted = not self._alarms.muted
-        self.notify(f"Bell {'off' if self._alarms.muted else 'on'}.", timeout=2.0)
-
-    def action_theme_next(self) -> None:
-        """Take the next theme: dark, light, high contrast."""
-        self.theme = next_theme(self.theme)
 
     def action_help(self) -> None:
         """Show the keys."""
@@ -297,11 +304,10 @@ class FlightApp(Commanding):
         yield SystemCommand("Back to the flight (Esc)", "From any other screen.", self.action_fly)
         yield SystemCommand("Open the recording in the viewer", "After landing.", self.action_review)
         yield SystemCommand("Centre the stick (space)", "All axes at once.", self._flight.action_centre)
-        yield SystemCommand("Seen (enter)", "Take all that is wrong as known.", self.action_acknowledge)
-        yield SystemCommand("Bell (u)", "Off, or on again.", self.action_mute)
-        yield SystemCommand("Theme (z)", "Dark, light, or high contrast.", self.action_theme_next)
-        yield SystemCommand("Next view (v)", "Map, side, chase, first person.", self._flight.action_view)
-        yield SystemCommand("Next page (tab)", "One instrument at a time, or all.", self._flight.action_page)
+        yield SystemCommand("Alarms seen (o)", "Acknowledge all alarms.", self.action_acknowledge)
+        yield SystemCommand("Bell on/off (b)", "The bell rings for alarms.", self.action_mute)
+        yield SystemCommand("Next theme (ctrl+t)", "Dark, light, high contrast.", self.action_next_theme)
+        yield from self._flight.commands()
         yield SystemCommand("Help (?)", "All keys.", self.action_help)
         yield SystemCommand("Quit (q)", "Asks first while the vehicle is in the air.", self.action_quit)
 

@@ -117,12 +117,15 @@ class Solids:
             return np.zeros(len(points), dtype=bool)
         way = (points - np.array(eye)) @ self.normals.T
         slack = self.offsets - self.normals @ np.array(eye)
-        with np.errstate(divide="ignore", invalid="ignore"):
+        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
             share = slack / way
         # Along the line of sight from 0 to 1: where it comes into each half-space, and where it leaves it.
         inward = np.where(way < 0.0, share, np.where((way == 0.0) & (slack < 0.0), np.inf, -np.inf))
         outward = np.where(way > 0.0, share, np.inf)
         enters = np.maximum.reduceat(inward, self.firsts, axis=1)
         leaves = np.minimum.reduceat(outward, self.firsts, axis=1)
-        behind = (enters > 0.0) & (enters < _SKIN) & (enters < leaves)
-        return np.logical_or.reduce(behind, axis=1)
+        return np.logical_or.reduce((enters > 0.0) & (enters < _SKIN) & (enters < leaves), axis=1)
+
+
+NOTHING = Solids(np.zeros((0, 3)), np.zeros(0), np.zeros(0, dtype=np.intp))
+"""What hides nothing."""

@@ -22,9 +22,10 @@ _BITS = tuple(
 )
 _SPACE = ord(" ")
 _TONES = tuple(Tone)
+# Further away than this nothing is drawn, dots.
+_FAR = 1e9
 # Longer lines are nobody's drawing, dots.
 _LONGEST = 4096
-_FAR = 1e9
 
 Floats = NDArray[np.float64]
 Tones = Tone | NDArray[np.uint8]
@@ -64,17 +65,24 @@ class Canvas:
             y: Dots from the top, shape (n,).
             tone: Of their cells: one, or one a dot.
         """
-        across, down = np.atleast_1d(np.asarray(x, dtype=float)), np.atleast_1d(np.asarray(y, dtype=float))
-        inside = (across > -0.5) & (across < self.width - 0.5) & (down > -0.5) & (down < self.height - 0.5)
-        columns, rows = np.rint(across[inside]).astype(np.intp), np.rint(down[inside]).astype(np.intp)
+        columns, rows, inside = self._cells(x, y)
         self._dots[rows, columns] = 1
         self._tones[rows >> 2, columns >> 1] = tone[inside] if isinstance(tone, np.ndarray) else tone
 
     def clear(self, x: ArrayLike, y: ArrayLike) -> None:
         """Take dots away, so that what is drawn next stands free; those outside or not finite are left out."""
-        across, down = np.atleast_1d(np.asarray(x, dtype=float)), np.atleast_1d(np.asarray(y, dtype=float))
-        inside = (across > -0.5) & (across < self.width - 0.5) & (down > -0.5) & (down < self.height - 0.5)
-        self._dots[np.rint(down[inside]).astype(np.intp), np.rint(across[inside]).astype(np.intp)] = 0
+        columns, rows, _ = self._cells(x, y)
+        self._dots[rows, columns] = 0
+
+    def _cells(
+        self, x: ArrayLike, y: ArrayLike
+    ) -> tuple[NDArray[np.intp], NDArray[np.intp], NDArray[np.bool_]]:
+        """Return columns and rows of the dots that are within, and which those are."""
+        # Half a dot is always rounded up: rounded to even numbers, every second dot of a line would be missing.
+        across = np.floor(np.atleast_1d(np.asarray(x, dtype=float)) + 0.5)
+        down = np.floor(np.atleast_1d(np.asarray(y, dtype=float)) + 0.5)
+        inside = (across >= 0.0) & (across < self.width) & (down >= 0.0) & (down < self.height)
+        return across[inside].astype(np.intp), down[inside].astype(np.intp), inside
 
     def line(self, x: ArrayLike, y: ArrayLike, tone: Tone, gap: int = 1) -> None:
         """Draw straight lines from point to point.
@@ -85,8 +93,9 @@ class Canvas:
             tone: Of their cells.
             gap: Only every so many dots, for dotted lines.
         """
-        points = np.stack([np.asarray(x, dtype=float), np.asarray(y, dtype=float)], axis=1)
-        dots = dots_of(points[:-1], points[1:], (self.width, self.height), gap)
+        across, down = np.asarray(x, dtype=float), np.asarray(y, dtype=float)
+        ends = [np.stack([axis[:-1], axis[1:]], axis=1) for axis in (across, down)]
+        dots = dots_of(ends[0], ends[1], (self.width, self.height), gap)
         self.plot(dots.x, dots.y, tone)
 
     def letters(self, column: int, row: int, text: str, tone: Tone) -> None:
@@ -115,8 +124,7 @@ class Dots(NamedTuple):
     """Dots of lines.
 
     Attributes:
-        x: Dots from the left, shape (m,).
-        y: Dots from the top, shape (m,).
+        x, y: Dots from the left and from the top, shape (m,).
         share: How far along its line each is, 0 to 1, shape (m,).
         line: To which line it belongs, shape (m,).
     """
@@ -127,36 +135,36 @@ class Dots(NamedTuple):
     line: NDArray[np.intp]
 
 
-def dots_of(starts: Floats, ends: Floats, size: tuple[int, int], gap: int | NDArray[np.intp] = 1) -> Dots:
+def dots_of(x: Floats, y: Floats, size: tuple[int, int], gap: int | NDArray[np.intp] = 1) -> Dots:
     """Return the dots of straight lines, as far as they are within a picture (Liang and Barsky, 1984).
 
     Args:
-        starts: Of the lines, dots from left and top, shape (n, 2).
-        ends: The same. Lines with an end that is not finite have no dots.
+        x: Their ends, dots from the left, shape (n, 2). Lines with an end that is not finite have no dots.
+        y: Likewise from the top.
         size: Width and height of the picture, dots.
         gap: Only every so many dots, of all lines or of each.
     """
-    # What is too far away to be reckoned with is not finite either.
-    finite = np.maximum(abs(starts), abs(ends)).max(axis=1) < _FAR
-    starts = np.where(finite[:, None], starts, 0.0)
-    ways = np.where(finite[:, None], ends, 0.0) - starts
-    begin, end = np.zeros(len(starts)), np.where(finite, 1.0, -1.0)
-    for start, way, length in zip(starts.T, ways.T, size, strict=True):
+    # What is too far away to be reckoned with is not finite either; NaN is not less than anything.
+    finite = np.logical_and.reduce((abs(x) < _FAR) & (abs(y) < _FAR), axis=1)
+    ends = [np.where(finite[:, None], axis, 0.0) for axis in (x, y)]
+    starts, ways = [axis[:, 0] for axis in ends], [axis[:, 1] - axis[:, 0] for axis in ends]
+    begin, end = np.zeros(len(x)), np.where(finite, 1.0, -1.0)
+    for start, way, edge in zip(starts, ways, size, strict=True):
         still = abs(way) < 1e-9
         safe = np.where(still, 1.0, way)
-        near, far = (-1.0 - start) / safe, (length - start) / safe
+        near, far = (-1.0 - start) / safe, (edge - start) / safe
         begin = np.where(still, begin, np.maximum(begin, np.minimum(near, far)))
         end = np.where(still, end, np.minimum(end, np.maximum(near, far)))
-        end = np.where(still & ((start < -1) | (start > length)), -1.0, end)
-    steps = np.rint((end - begin) * abs(ways).max(axis=1))
+        end = np.where(still & ((start < -1) | (start > edge)), -1.0, end)
+    steps = np.rint((end - begin) * np.maximum(abs(ways[0]), abs(ways[1])))
     whole = np.clip(np.where(end >= begin, steps, 0.0), 0, _LONGEST).astype(np.intp)
     counts = np.where(end >= begin, whole // gap + 1, 0)
-    which = np.repeat(np.arange(len(starts)), counts)
+    which = np.repeat(np.arange(len(x)), counts)
     firsts = np.cumsum(counts) - counts
     number = (np.arange(len(which)) - firsts[which]) * (gap if isinstance(gap, int) else gap[which])
     share = begin[which] + (end - begin)[which] * number / np.maximum(whole, 1)[which]
-    x, y = (starts[which] + ways[which] * share[:, None]).T
-    return Dots(x, y, share, which)
+    across, down = (start[which] + way[which] * share for start, way in zip(starts, ways, strict=True))
+    return Dots(across, down, share, which)
 
 
 def _runs(codes: NDArray[np.uint32], tones: NDArray[np.uint8]) -> list[Row]:

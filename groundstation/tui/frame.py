@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Protocol
 
 from groundstation.console import Snapshot
@@ -12,7 +12,7 @@ from groundstation.messages import CommandKind, PilotState, Record
 from groundstation.run import Run
 from groundstation.training.director import Figures
 from groundstation.tui.acts import PILOT_STALE_S
-from groundstation.tui.alarms import Alarm
+from groundstation.tui.alarms import Alarms
 from groundstation.tui.hand import Share4
 from groundstation.tui.notes import Note
 from groundstation.tui.track import History, Track
@@ -59,9 +59,9 @@ class Frame:
         hindrances: Why each act and choice cannot be made now, by name; "" where it can.
         guarded_by: What the guard keeps away from, now or a moment ago, or "".
         notes: What the screen itself has to say, oldest first.
-        figures: What the flight has come to so far, or None without a mission.
-        alarms: What is wrong, the most urgent first.
-        muted: No bell is rung.
+        figures: What the mission has come to so far, or None without one.
+        alarms: What is wrong, as of the frame before.
+        paint_hz: Frames painted a second, as the terminal takes them.
     """
 
     snapshot: Snapshot
@@ -75,8 +75,8 @@ class Frame:
     track: Track
     history: History
     figures: Figures | None = None
-    alarms: Sequence[Alarm] = ()
-    muted: bool = False
+    alarms: Alarms = field(default_factory=Alarms)
+    paint_hz: float = math.nan
 
     @property
     def now(self) -> float:

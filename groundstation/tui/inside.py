@@ -9,7 +9,7 @@ import numpy as np
 from groundstation.messages import Phase, PilotState
 from groundstation.training.mission import Fence, Mission
 from groundstation.tui import wireframe
-from groundstation.tui.camera import Camera, Solids
+from groundstation.tui.camera import NOTHING, Camera, Solids
 from groundstation.tui.canvas import Canvas
 from groundstation.tui.frame import Frame
 from groundstation.tui.moving import FADED_S, FRESH_S, echoes
@@ -19,13 +19,16 @@ from groundstation.tui.scene import gates
 from groundstation.tui.tape import heading_tape
 from groundstation.tui.theme import Tone
 from groundstation.tui.wireframe import Floats
+from sim.environment.shapes import extent
 
 # How far behind the vehicle and above it the chasing camera is at zoom 1, m, and how far down it looks, rad.
 _BEHIND_M, _ABOVE_M, _DOWN = 3.0, 1.5, -0.34
 # What is seen across the picture at zoom 1, rad.
 _ANGLE = math.radians(80.0)
-_GROUND_M, _DIM_M, _GRID_DIM_M, _HORIZON_M = 20.0, 12.0, 7.0, 2000.0
+_GROUND_M, _DIM_M, _GRID_DIM_M, _HORIZON_M = 14.0, 12.0, 5.0, 2000.0
 _FENCE_POSTS = 16
+# This far around a vehicle nothing behind it is drawn, m.
+_FREE_M = 0.55
 _SLOW = 0.3
 _TAPE_FROM = 30
 
@@ -36,7 +39,7 @@ def camera(frame: Frame, columns: int, rows: int, zoom: float, *, chase: bool) -
     Args:
         frame: Of which the picture is.
         columns: Of the picture, cells.
-        rows: Of the picture, cells.
+        rows: Likewise.
         zoom: Nearer where above 1.
         chase: From behind the vehicle, not from it.
     """
@@ -73,9 +76,9 @@ def draw_inside(
     scene = [*_standing(frame, eye, mission, fence), *_flown(frame, chase=chase)]
     if pilot is not None:
         scene += _led(frame, pilot, chase=chase)
-    if chase:
-        scene += _vehicle(frame)
     draw(canvas, eye, solids, scene)
+    if chase:
+        _draw_vehicle(canvas, frame, eye, solids)
     _labels(canvas, frame, eye, solids)
     if not chase:
         _sights(canvas, frame, eye)
@@ -91,7 +94,7 @@ def _standing(frame: Frame, eye: Camera, mission: Mission | None, fence: Fence) 
     skyline = np.stack([np.cos(angles), np.sin(angles), np.zeros(73)], axis=1) * _HORIZON_M + np.array(place)
     scene = [
         Lines(wireframe.ground(place, _GROUND_M), Tone.GRID, 2, far=_GRID_DIM_M),
-        Lines(wireframe.path(skyline), Tone.FAINT),
+        Lines(wireframe.path(skyline), Tone.MUTED),
     ]
     if fence.radius > 0.0:
         scene.append(Lines(_fence(fence, max(place[2], 2.0)), Tone.OBSTACLE, 2))
@@ -161,6 +164,19 @@ def _led(frame: Frame, pilot: PilotState, *, chase: bool) -> list[Lines]:
     return scene
 
 
+def _draw_vehicle(canvas: Canvas, frame: Frame, eye: Camera, solids: Solids) -> None:
+    """Draw the vehicle so that it stands free of what is behind it."""
+    state = frame.snapshot.vehicle
+    assert state is not None
+    x, y = eye.dots(np.array(tuple(state.position)[:3]))
+    distance = math.dist(eye.place, tuple(state.position)[:3])
+    reach = _FREE_M * eye.focal / max(distance, 0.1)
+    across, down = np.meshgrid(np.arange(-reach, reach + 1), np.arange(-0.4 * reach, 0.4 * reach + 1))
+    disc = (across / reach) ** 2 + (down / (0.4 * reach)) ** 2 <= 1.0
+    canvas.clear(x + across[disc], y + down[disc])
+    draw(canvas, eye, solids, _vehicle(frame))
+
+
 def _vehicle(frame: Frame) -> list[Lines]:
     """Return the vehicle, its shadow, and what its own sensors see."""
     state = frame.snapshot.vehicle
@@ -183,21 +199,28 @@ def _vehicle(frame: Frame) -> list[Lines]:
 
 
 def _labels(canvas: Canvas, frame: Frame, eye: Camera, solids: Solids) -> None:
-    """Write names over what is seen: the target with how far it is, the gates with their numbers."""
+    """Write names over what is seen: the target, through everything, with how far it is; gates with their numbers."""
     mission, vehicle = frame.run.mission, frame.snapshot.vehicle
     if mission is None or vehicle is None:
         return
     here = tuple(vehicle.position)[:3]
-    words: list[tuple[tuple[float, float, float], str, Tone]] = []
+    numbers = {gate.name: f"gate {number}" for number, gate in enumerate(gates(mission), 1)}
+    for obstacle in mission.obstacle:
+        lower, upper = extent(obstacle)
+        x, y = 0.5 * (lower[0] + upper[0]), 0.5 * (lower[1] + upper[1])
+        if math.dist(here[:2], (x, y)) < _DIM_M:
+            tone = Tone.WARN if obstacle.name == frame.guarded_by else Tone.MUTED
+            name = numbers.get(obstacle.name, obstacle.name)
+            _label(canvas, visible(eye, solids, np.array((x, y, upper[2] + 0.15))), name, tone)
     if mission.target is not None:
         x, y, z = mission.target.position
-        words.append(((x, y, z + 0.4), f"target {math.dist(here, (x, y, z)):.1f} m", Tone.TARGET))
-    for number, gate in enumerate(gates(mission), 1):
-        x, y, z = gate.center
-        words.append(((x, y, z + gate.height / 2 + 0.3), f"gate {number}", Tone.TEXT))
-    for place, text, tone in words:
-        if seen := visible(eye, solids, np.array(place)):
-            canvas.letters(int(seen[0] / 2) - len(text) // 2, int(seen[1] / 4), text, tone)
+        words = f"target {math.dist(here, (x, y, z)):.1f} m"
+        _label(canvas, visible(eye, NOTHING, np.array((x, y, z + 0.4))), words, Tone.TARGET)
+
+
+def _label(canvas: Canvas, dot: tuple[float, float] | None, words: str, tone: Tone) -> None:
+    if dot is not None:
+        canvas.letters(int(dot[0] / 2) - len(words) // 2, int(dot[1] / 4), words, tone)
 
 
 def _sights(canvas: Canvas, frame: Frame, eye: Camera) -> None:

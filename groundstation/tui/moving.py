@@ -1,4 +1,4 @@
-"""A flat map as pure drawing, what moves: way flown, vehicle, where it will be, hand, echoes. Points are ENU, m."""
+"""A flat map as pure drawing, what moves: way flown, vehicle, forecast, hand, echoes. World points are m, ENU."""
 
 from __future__ import annotations
 
@@ -79,8 +79,8 @@ def draw_predicted(canvas: Canvas, view: View, seen: Pose, predicted: Pose, stop
         return
     canvas.line(view.x(np.array([then[0], end[0]])), view.y(np.array([then[1], end[1]])), Tone.TRAIL, gap=2)
     x, y = float(view.x(end[0])), float(view.y(end[1]))
-    for side in (2, -2):
-        canvas.line([x - 2, x + 2], [y - side, y + side], Tone.VEHICLE)
+    steps = np.arange(-2.0, 3.0)
+    canvas.plot(np.tile(x + steps, 2), np.concatenate([y + steps, y - steps]), Tone.VEHICLE)
 
 
 def draw_echoes(canvas: Canvas, view: View, seen: Pose, distances: Sequence[float], tone: Tone) -> None:

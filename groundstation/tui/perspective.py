@@ -13,6 +13,8 @@ from groundstation.tui.theme import Tone
 
 Floats = NDArray[np.float64]
 
+# Whether a dot is hidden is asked for one in so many.
+_ASKED = 3
 # Of lines that are seen through bodies, one dot in so many shows there.
 _THROUGH = 4
 
@@ -55,19 +57,21 @@ def draw(canvas: Canvas, camera: Camera, solids: Solids, scene: list[Lines]) -> 
     segments, seen = before(camera.seen(every))
     depth = segments[:, :, 2].mean(axis=1)
     distant = depth > fars
-    gaps = np.where(distant, 2 * gaps, gaps)
-    tones = np.where(distant & (tones == Tone.BESIDE), np.uint8(Tone.OBSTACLE), tones)
+    gaps, tones = (
+        np.where(distant, 2 * gaps, gaps),
+        np.where(distant & (tones == Tone.BESIDE), np.uint8(Tone.OBSTACLE), tones),
+    )
     segments, gaps, tones, through = segments[seen], gaps[seen], tones[seen], through[seen]
-    flat = np.stack(camera.picture(segments), axis=2)
-    dots = dots_of(flat[:, 0], flat[:, 1], (canvas.width, canvas.height), gaps)
-    hidden = solids.hide(camera.place, _places(camera, segments, dots))
+    x, y = camera.picture(segments)
+    dots = dots_of(x, y, (canvas.width, canvas.height), gaps)
+    hidden = _hidden(camera, solids, segments, dots)
     sparse = through[dots.line] & (np.arange(len(hidden)) % _THROUGH == 0)
     shown = ~hidden | sparse
     canvas.plot(dots.x[shown], dots.y[shown], tones[dots.line[shown]])
 
 
 def visible(camera: Camera, solids: Solids, point: Floats) -> tuple[float, float] | None:
-    """Return the dot of a point, or None where it is not seen."""
+    """Return the dot of a point, or None where it is not in the picture or is hidden, by whatever can hide it."""
     x, y = camera.dots(point)
     inside = 0 <= x < camera.width and 0 <= y < camera.height
     if not inside or solids.hide(camera.place, point[None])[0]:
@@ -75,17 +79,18 @@ def visible(camera: Camera, solids: Solids, point: Floats) -> tuple[float, float
     return float(x), float(y)
 
 
+def _hidden(camera: Camera, solids: Solids, segments: Floats, dots: Dots) -> NDArray[np.bool_]:
+    """Say which dots are behind a body; of neighbours only one is asked about, the others are as it is."""
+    x, y, share, line = dots
+    asked = Dots(x[::_ASKED], y[::_ASKED], share[::_ASKED], line[::_ASKED])
+    hidden = solids.hide(camera.place, _places(camera, segments, asked))
+    return np.repeat(hidden, _ASKED)[: len(dots.x)]
+
+
 def _places(camera: Camera, segments: Floats, dots: Dots) -> Floats:
-    """Return where in the world the dots of segments are; along a segment 1/depth goes evenly."""
+    """Return where in the world the dots of segments are, m; along a segment 1/depth goes evenly."""
     nearness = 1.0 / segments[:, :, 2]
-    first, last = nearness[dots.line].T
-    depth = 1.0 / (first + dots.share * (last - first))
-    seen = np.stack(
-        [
-            (dots.x - (camera.width - 1) / 2) / camera.focal * depth,
-            (dots.y - (camera.height - 1) / 2) / camera.focal * depth,
-            depth,
-        ],
-        axis=1,
-    )
-    return seen @ camera.axes() + np.array(camera.place)
+    depth = 1.0 / (nearness[dots.line, 0] + dots.share * (nearness[dots.line, 1] - nearness[dots.line, 0]))
+    across = (dots.x - (camera.width - 1) / 2) / camera.focal * depth
+    down = (dots.y - (camera.height - 1) / 2) / camera.focal * depth
+    return np.stack([across, down, depth], axis=1) @ camera.axes() + np.array(camera.place)

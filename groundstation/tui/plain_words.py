@@ -7,9 +7,10 @@ import math
 from groundstation.messages import Phase, Severity
 from groundstation.tui import judge
 from groundstation.tui.acts import ACTS, armed, in_air
-from groundstation.tui.alerts import alerts, next_step
+from groundstation.tui.alerts import conditions
 from groundstation.tui.choices import CHOICES
 from groundstation.tui.frame import Frame
+from groundstation.tui.hints import next_step
 from groundstation.tui.rows import clock, quantity, span_of_time
 
 HELP = "\n".join(
@@ -36,7 +37,8 @@ def line(frame: Frame) -> str:
 
 def _worst(frame: Frame) -> tuple[Severity, str]:
     """Return the most urgent that is wrong, the first of its kind, else what can be done next."""
-    found = max(alerts(frame), key=lambda alert: alert.severity, default=None)
+    wrong = [each for each in conditions(frame) if each.severity is not Severity.INFO]
+    found = max(wrong, key=lambda condition: condition.severity, default=None)
     return (found.severity, found.text) if found is not None else (Severity.INFO, next_step(frame))
 
 

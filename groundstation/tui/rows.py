@@ -95,6 +95,16 @@ def joined(cells: Sequence[str], tones: Sequence[Tone]) -> Row:
     return row
 
 
+def wrapped(text: str, width: int) -> list[str]:
+    """Break a sentence between words; textwrap is several times slower, and this runs in every frame."""
+    lines = [""]
+    for word in text.split():
+        if lines[-1] and len(lines[-1]) + 1 + len(word) > width:
+            lines.append("")
+        lines[-1] = f"{lines[-1]} {word}" if lines[-1] else word
+    return lines
+
+
 def bar(value: float | None, limit: float, width: int, tone: Tone, mark: float | None = None) -> Row:
     """Return a signed bar from the middle, half a cell fine, with a mark for a second value.
 
@@ -123,18 +133,19 @@ def bar(value: float | None, limit: float, width: int, tone: Tone, mark: float |
     return joined(cells, tones)
 
 
-def gauge(value: float | None, limit: float, width: int, tone: Tone) -> Row:
+def gauge(value: float | None, limit: float, width: int, tone: Tone, full: Tone = Tone.WARN) -> Row:
     """Return a bar from the left for what has no sign, half a cell fine; what is not known is an empty track.
 
     Args:
         value: From 0 on.
-        limit: At full deflection, where the bar turns into a warning.
+        limit: At full deflection.
         width: Cells.
         tone: Of the bar.
+        full: Of the bar at full deflection: a warning, where that is nothing good.
     """
     width = max(width, 0)
     known = value is not None and math.isfinite(value) and limit > 0
     share = max(0.0, min(value / limit, 1.0)) if known and value is not None else 0.0
     whole, half = divmod(round(2 * share * width), 2)
     filled = "█" * whole + "▌" * half
-    return [(filled, Tone.WARN if share >= 1.0 else tone), ("─" * (width - whole - half), Tone.GRID)]
+    return [(filled, full if share >= 1.0 else tone), ("─" * (width - whole - half), Tone.GRID)]

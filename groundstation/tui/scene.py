@@ -1,4 +1,4 @@
-"""A flat map as pure drawing, what stands still: obstacles, fence, gates, route, target. See also `moving`."""
+"""A flat map as pure drawing, what stands still: obstacles, fence, gates, route, target. `moving` has the rest."""
 
 from __future__ import annotations
 

@@ -107,6 +107,7 @@ _LOOKS: dict[Tone, tuple[str, str, bool, bool]] = {
 }
 
 # The shapes that say the severity where there is no colour.
+PRIORITIES = {Severity.INFO: "◇ ADVICE", Severity.WARNING: "▲ CAUTION", Severity.ALARM: "■ ALARM"}
 MARKS = {Severity.INFO: " ", Severity.WARNING: "▲", Severity.ALARM: "■"}
 TONES = {Severity.INFO: Tone.TEXT, Severity.WARNING: Tone.WARN, Severity.ALARM: Tone.FAULT}
 

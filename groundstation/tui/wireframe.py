@@ -1,4 +1,4 @@
-"""The world as lines in space, for the views from within it: what stands, and shapes to place in it. Pure NumPy.
+"""The world as lines in space, for the views from within it: what stands still, and shapes to place. Pure NumPy.
 
 World ENU, m. Lines are segments, shape (n, 2, 3).
 """
@@ -145,7 +145,7 @@ def vehicle(position: Floats, yaw: float, pitch: float, roll: float) -> Floats:
     nose = path(
         np.array([(0.0, 0.0, 0.0), (0.42, 0.0, 0.0), (0.3, 0.07, 0.0), (0.42, 0.0, 0.0), (0.3, -0.07, 0.0)])
     )
-    rotors = [level_circle(hub, _ROTOR_M) for hub in hubs + np.array([0.0, 0.0, 0.05])]
+    rotors = [level_circle(hub + np.array([0.0, 0.0, 0.05]), _ROTOR_M) for hub in hubs]
     lines = np.concatenate([arms, nose, *rotors])
     cp, sp, cr, sr = math.cos(pitch), math.sin(pitch), math.cos(roll), math.sin(roll)
     rolled = lines @ np.array([(1.0, 0.0, 0.0), (0.0, cr, sr), (0.0, -sr, cr)])

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import ClassVar
 
 from textual import events
-from textual.app import ComposeResult
+from textual.app import ComposeResult, SystemCommand
 from textual.binding import Binding, BindingType
 from textual.containers import Horizontal, Vertical
-from textual.dom import DOMNode
 from textual.screen import Screen
+from textual.widget import Widget
 
 from groundstation.tui.acts import ACTS
 from groundstation.tui.choices import CHOICES
@@ -27,6 +27,7 @@ from groundstation.tui.widgets.keys import Keys
 from groundstation.tui.widgets.mission import Mission
 from groundstation.tui.widgets.numbers import FlightLine, Numbers
 from groundstation.tui.widgets.overview import Overview
+from groundstation.tui.widgets.pages import ALL, NAMES, Pages
 from groundstation.tui.widgets.status import StatusBar
 from groundstation.tui.widgets.stick import FORWARD, LEFT, UP, YAW, Stick
 from groundstation.tui.widgets.system import System
@@ -77,15 +78,12 @@ def _bindings() -> list[BindingType]:
         *choices,
         *steps,
         Binding("space,0", "centre", "Stick to the centre", show=False),
+        Binding("tab", "page(1)", "Next instrument", show=False, priority=True),
+        Binding("shift+tab", "page(-1)", "Instrument before", show=False, priority=True),
         Binding("v,V", "view", "Next view", show=False),
         Binding("g,G", "follow", "Follow, or whole mission", show=False),
         Binding("plus,equals_sign", "zoom(1)", "Zoom in", show=False),
         Binding("minus,underscore", "zoom(-1)", "Zoom out", show=False),
-        Binding("tab", "page(1)", "One instrument, or all", show=False),
-        Binding("shift+tab", "page(-1)", "The page before", show=False),
-        Binding("enter", "app.acknowledge", "Seen", show=False),
-        Binding("u,U", "app.mute", "Bell off or on", show=False),
-        Binding("z,Z", "app.theme_next", "Next theme", show=False),
         Binding("question_mark,f1", "app.help", "Help", show=False),
         Binding("q,Q", "app.quit", "Quit", show=False),
     ]
@@ -108,7 +106,9 @@ class FlightScreen(Screen[None]):
         self._hand = hand
         self._stick = Stick(hand, id="stick")
         self._map = Overview(id="map")
+        self._pages = Pages(self.show_page, id="pages")
         self._instruments: list[Instrument] = []
+        self._shown: list[Instrument] = []
         self._latest: Frame | None = None
         self._page = ""
 
@@ -117,6 +117,7 @@ class FlightScreen(Screen[None]):
         yield StatusBar(id="status")
         yield FlightLine(id="line")
         yield Banner(id="banner")
+        yield self._pages
         with Horizontal(id="body"):
             with Vertical(id="where"):
                 with Horizontal(id="place"):
@@ -124,9 +125,7 @@ class FlightScreen(Screen[None]):
                     yield Altitude(id="altitude")
                 with Horizontal(id="below"):
                     yield Attitude(id="attitude")
-                    with Vertical(id="course"):
-                        yield Mission(id="mission")
-                        yield Happenings(id="events")
+                    yield Happenings(id="events")
             with Vertical(id="hand"):
                 yield Numbers(id="numbers")
                 yield self._stick
@@ -134,7 +133,9 @@ class FlightScreen(Screen[None]):
                 yield Tracking(id="tracking")
                 yield Velocity(id="velocity")
                 yield System(id="system")
-            yield Curves(id="curves")
+            with Vertical(id="story"):
+                yield Mission(id="mission")
+                yield Curves(id="curves")
         yield Keys(id="keys")
 
     def on_mount(self) -> None:
@@ -144,9 +145,9 @@ class FlightScreen(Screen[None]):
     def show(self, frame: Frame) -> None:
         """Hand a frame to the instruments that are to be seen."""
         self._latest = frame
-        for instrument in self._instruments:
-            if instrument.display:
-                instrument.show(frame)
+        self._shown = self._shown or [instrument for instrument in self._instruments if _seen(instrument)]
+        for instrument in self._shown:
+            instrument.show(frame)
 
     def action_step(self, axis: int, direction: int) -> None:
         """Move the on-screen stick by a step."""
@@ -157,15 +158,45 @@ class FlightScreen(Screen[None]):
         """Put the on-screen stick into its centre."""
         self._stick.centre()
 
-    def action_page(self, steps: int = 1) -> None:
-        """Show one instrument over the whole body, the next one, or all again."""
-        pages = ["", *(name for name in _PAGES if self.query(f"#{name}"))]
-        self._page = pages[(pages.index(self._page) + steps) % len(pages)]
-        body = self.query_one("#body")
-        chosen = set(self.query_one(f"#{self._page}").ancestors_with_self) if self._page else set[DOMNode]()
-        body.set_class(bool(self._page), "-alone")
-        for part in body.query("*"):
-            part.set_class(part in chosen, "-chosen")
+    def action_page(self, steps: int) -> None:
+        """Give the body to the next instrument, or to all of them."""
+        self.show_page(self._pages.after(steps))
+
+    def show_page(self, name: str) -> None:
+        """Give the body to one instrument, or to all that there is room for."""
+        self._pages.page = name
+        self.set_class(name != ALL, "-solo")
+        for widget in self.query("#body *"):
+            widget.remove_class("-here")
+        if name != ALL:
+            for widget in self.query_one(f"#{name}").ancestors_with_self:
+                widget.set_class(isinstance(widget, Widget) and widget is not self, "-here")
+        # The map's altitude stays beside it.
+        self.query_one("#altitude").set_class(name == "map", "-here")
+        self.call_after_refresh(self._look_again)
+
+    def on_resize(self) -> None:
+        """The terminal has another size."""
+        self.call_after_refresh(self._look_again)
+
+    def _look_again(self) -> None:
+        """Find out anew which instruments have a place on the screen."""
+        self._shown = []
+        if self._latest is not None:
+            self.show(self._latest)
+
+    def commands(self) -> Iterator[SystemCommand]:
+        """List what this screen can do, for the palette."""
+        yield SystemCommand("Next view of the map (v)", "Above, side, chase, first person.", self.action_view)
+        yield SystemCommand("Follow or whole (g)", "The map follows the vehicle.", self.action_follow)
+        yield SystemCommand("Zoom in (+)", "Nearer.", lambda: self.action_zoom(1))
+        yield SystemCommand("Zoom out (-)", "Further away.", lambda: self.action_zoom(-1))
+        for name in NAMES:
+            title = f"Show {name} (tab)"
+            words = (
+                "As many instruments as there is room for." if name == ALL else "With all the room there is."
+            )
+            yield SystemCommand(title, words, lambda name=name: self.show_page(name))
 
     def action_view(self) -> None:
         """See the flight from the next place."""
@@ -193,6 +224,11 @@ class FlightScreen(Screen[None]):
         if reason:
             self.notify(reason, timeout=3.0)
             event.stop()
+
+
+def _seen(instrument: Instrument) -> bool:
+    """Say whether an instrument has a place on the screen now."""
+    return all(widget.display for widget in instrument.ancestors_with_self if isinstance(widget, Widget))
 
 
 def reason_for(key: str, hindrances: Mapping[str, str]) -> str:

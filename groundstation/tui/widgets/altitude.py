@@ -19,7 +19,7 @@ _EIGHTHS = " ▁▂▃▄▅▆▇█"
 class Altitude(Instrument):
     """A column filled to the vehicle's altitude, with marks beside it."""
 
-    BORDER_TITLE = "altitude"
+    BORDER_TITLE = "alt"
     STALE_S = 0.5
 
     def __init__(self, *, id: str | None = None) -> None:  # noqa: A002 - Textual's own name

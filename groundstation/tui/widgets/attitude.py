@@ -23,7 +23,7 @@ class Attitude(Instrument):
     """Roll and pitch against the horizon; earth is hatched, sky is empty."""
 
     BORDER_TITLE = "attitude"
-    EVERY = 2
+    EVERY = 3
     STALE_S = 0.5
 
     def data_age(self, frame: Frame) -> float:
@@ -68,19 +68,24 @@ def draw_horizon(canvas: Canvas, roll: float, pitch: float) -> None:
         earth = (below > 1.0) & ((columns + 2 * rows) % 4 == 0)
         canvas.plot(columns[earth], rows[earth], Tone.EARTH)
         reach = canvas.width + canvas.height
-        middle = (x + s * down, y + c * down)
-        _stroke(canvas, middle, (c, -s), (-reach, reach), Tone.STRONG)
-        for step in _LADDER:
-            at = down - step * _DOTS_A_DEGREE
-            _stroke(canvas, (x + s * at, y + c * at), (c, -s), (-_RUNG, _RUNG), Tone.MUTED)
+        _strokes(canvas, [(x + s * down, y + c * down)], (c, -s), reach, Tone.STRONG)
+        rungs = [down - step * _DOTS_A_DEGREE for step in _LADDER]
+        _strokes(canvas, [(x + s * at, y + c * at) for at in rungs], (c, -s), _RUNG, Tone.MUTED)
+    across, under = np.meshgrid(np.arange(-_GAP - _WINGS - 1, _GAP + _WINGS + 2), np.arange(-1, 5))
+    canvas.clear(x + across, y + under)
     for side in (-1, 1):
-        canvas.line([x + side * _GAP, x + side * (_GAP + _WINGS)], [y, y], Tone.VEHICLE)
-        canvas.line([x + side * _GAP, x + side * _GAP], [y, y + 3], Tone.VEHICLE)
+        near, far = x + side * _GAP, x + side * (_GAP + _WINGS)
+        canvas.line([far, near, near], [y, y, y + 3], Tone.VEHICLE)
     canvas.plot([x, x, x - 1, x + 1], [y, y + 1, y, y], Tone.VEHICLE)
 
 
-def _stroke(
-    canvas: Canvas, at: tuple[float, float], way: tuple[float, float], ends: tuple[int, int], tone: Tone
+def _strokes(
+    canvas: Canvas, middles: list[tuple[float, float]], way: tuple[float, float], reach: float, tone: Tone
 ) -> None:
-    """Draw a line through a point: from one end to the other along a direction, dots."""
-    canvas.line([at[0] + end * way[0] for end in ends], [at[1] + end * way[1] for end in ends], tone)
+    """Draw lines of one direction through points, each so far to both sides, dots."""
+    across, down = [], []
+    for x, y in middles:
+        # What is not a number ends a line.
+        across += [x - reach * way[0], x + reach * way[0], math.nan]
+        down += [y - reach * way[1], y + reach * way[1], math.nan]
+    canvas.line(across, down, tone)

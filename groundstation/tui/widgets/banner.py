@@ -1,43 +1,52 @@
-"""The line of words: the most urgent that is wrong, and how much more is; else what to do next."""
+"""The line of words: the most pressing that is wrong, or what to do next."""
 
 from __future__ import annotations
 
 from groundstation.messages import Severity
-from groundstation.tui.alarms import PRIORITIES, Alarm
-from groundstation.tui.alerts import next_step
+from groundstation.tui.alarms import Alarm, Alarms
 from groundstation.tui.frame import Frame
-from groundstation.tui.rows import Row, spread
-from groundstation.tui.theme import MARKS, TONES, Tone
+from groundstation.tui.hints import next_step
+from groundstation.tui.rows import Row, fit, span_of_time
+from groundstation.tui.theme import PRIORITIES, Tone
 from groundstation.tui.widgets.instrument import Instrument
 
-_NEW = {Severity.INFO: Tone.NOTE, Severity.WARNING: Tone.CAUTION, Severity.ALARM: Tone.ALARM}
+_TONES = {Severity.INFO: Tone.NOTE, Severity.WARNING: Tone.CAUTION, Severity.ALARM: Tone.ALARM}
 
 
 class Banner(Instrument):
-    """One line over the whole width; a reversed one is new, Enter takes it as known."""
+    """One line over the whole width."""
 
     EVERY = 3
 
     def draw(self, frame: Frame, width: int, height: int) -> list[Row]:
-        """Draw the most urgent, or the next step."""
+        """Draw the most pressing alarm and how many more there are, or the next step."""
         del height
-        if not frame.alarms:
-            return [[(" › ", Tone.NOTE), (next_step(frame), Tone.NOTE)]]
-        first = frame.alarms[0]
-        new = not first.rank[0]
-        tone = _NEW[first.severity] if new or first.severity is Severity.INFO else TONES[first.severity]
-        words = f" {_mark(first)} {PRIORITIES[first.severity]}  {first.text} "
-        keys = _keys(frame, len(frame.alarms) - 1, new=new)
-        # What is new is reversed over the whole width.
-        return [spread([(words, tone)], [(keys, tone)], width, tone if new else Tone.TEXT)]
+        alarm = frame.alarms.first()
+        if alarm is None:
+            tone, left = Tone.NOTE, f" › {next_step(frame)}"
+        else:
+            tone = Tone.WARN if alarm.seen else _TONES[alarm.severity]
+            left = f" {headline(alarm, frame.now)}"
+        right = _right(frame.alarms, alarm)
+        room = max(width - len(right), 0)
+        return [[*fit([(left, tone), (" " * room, tone)], room), (right, tone)]]
 
 
-def _mark(alarm: Alarm) -> str:
-    return "›" if alarm.severity is Severity.INFO else MARKS[alarm.severity]
+def headline(alarm: Alarm, now: float) -> str:
+    """Return an alarm in a line: priority, how often, whether it is over or seen, and what it is."""
+    times = f" ×{alarm.count}" if alarm.count > 1 else ""
+    seen = " seen" if alarm.seen else ""
+    over = "" if alarm.active else f" {span_of_time(now - alarm.ended)} ago"
+    return f"{PRIORITIES[alarm.severity]}{times}{seen}{over}  {alarm.text}"
 
 
-def _keys(frame: Frame, more: int, *, new: bool) -> str:
-    parts = [f"+{more}"] if more else []
-    parts += ["Enter: seen"] if new else []
-    parts += ["bell off"] if frame.muted else ["u: bell off"] if new else []
-    return f"{'  '.join(parts)} " if parts else ""
+def _right(alarms: Alarms, shown: Alarm | None) -> str:
+    """Return how many more there are, the key that acknowledges, and whether the bell is muted."""
+    listed = alarms.listed()
+    serious = sum(alarm is not shown and alarm.severity > Severity.INFO for alarm in listed)
+    advice = sum(alarm is not shown and alarm.severity is Severity.INFO for alarm in listed)
+    words = [f"▲ +{serious}"] if serious else []
+    words += [f"◇ {advice}"] if advice else []
+    words += ["b bell off"] if alarms.muted else []
+    words += ["o seen"] if shown is not None and not shown.seen else []
+    return f" {'  '.join(words)} " if words else ""

@@ -3,20 +3,22 @@
 from __future__ import annotations
 
 import math
-from typing import ClassVar
+from typing import ClassVar, Self
 
 from rich.segment import Segment
 from rich.style import Style
 from textual import events
-from textual.geometry import Region
+from textual.geometry import Region, Size
 from textual.strip import Strip
 from textual.widget import Widget
 
 from groundstation.tui.frame import Frame
 from groundstation.tui.rows import Row, fit, span_of_time
-from groundstation.tui.theme import STYLES, Tone
+from groundstation.tui.theme import Tone, styles_of
 
 _STALE_CLASS = "-stale"
+# Younger than this is simply fresh, s.
+_FRESH_S = 0.1
 
 
 class Instrument(Widget, can_focus=False):
@@ -37,15 +39,21 @@ class Instrument(Widget, can_focus=False):
         self._frame: Frame | None = None
         self._styles: dict[Tone, Style] = {}
         self._turn = 0
+        self._composed: dict[tuple[Region, Size], list[Strip]] = {}
+        self.title = str(self.BORDER_TITLE or "")
 
     def draw(self, frame: Frame, width: int, height: int) -> list[Row]:
         """Return the rows of the content area, at most `height` of `width` cells each."""
         raise NotImplementedError
 
+    def every(self) -> int:
+        """Return every how many frames it is drawn now."""
+        return self.EVERY
+
     def data_age(self, frame: Frame) -> float:
-        """Return the age of what it shows, s; infinite where nothing has come yet."""
+        """Return the age of what it shows, s; infinite where nothing has come yet, NaN where it has no one age."""
         del frame
-        return 0.0
+        return math.nan
 
     def footnote(self, frame: Frame) -> str:
         """Return what stands in the lower border while the data is fresh."""
@@ -57,7 +65,7 @@ class Instrument(Widget, can_focus=False):
         self._frame = frame
         self._turn += 1
         # Before it is mounted, Textual forgets what is asked to be painted.
-        if self.is_mounted and self.size and (not self._rows or self._turn % self.EVERY == 0):
+        if self.is_mounted and self.size and (not self._rows or self._turn % self.every() == 0):
             self._paint(frame)
 
     def _paint(self, frame: Frame) -> None:
@@ -65,17 +73,17 @@ class Instrument(Widget, can_focus=False):
         self._note(frame)
         rows = self.draw(frame, width, height)
         rows.extend([] for _ in range(height - len(rows)))
-        if len(rows) != len(self._rows):
+        if not len(rows) == len(self._rows) == height:
             self._rows = rows
             self.refresh()
             return
-        changed = [Region(0, y, width, 1) for y in range(len(rows)) if rows[y] != self._rows[y]]
+        changed = [y for y in range(height) if rows[y] != self._rows[y]]
         self._rows = rows
         if changed:
-            self.refresh(*changed)
+            self.refresh(*_bands(changed, width))
 
     def _note(self, frame: Frame) -> None:
-        """Write into the lower border how old the data is, or the footnote."""
+        """Write into the upper border what it is and how old, and below the footnote, or that it is stale."""
         age = self.data_age(frame)
         stale = age > self.STALE_S
         if stale != self.has_class(_STALE_CLASS):
@@ -85,6 +93,23 @@ class Instrument(Widget, can_focus=False):
         words = old if stale else self.footnote(frame)
         if words != (self.border_subtitle or ""):
             self.border_subtitle = words
+        title = f"{self.title} · {_rounded(age)}" if self.title and math.isfinite(age) else self.title
+        if title != (self.border_title or ""):
+            self.border_title = title
+
+    def render_lines(self, crop: Region) -> list[Strip]:
+        """Return a part as it was composed last if nothing has changed since: others change in every frame."""
+        asked = (crop, self.size)
+        if asked not in self._composed:
+            self._composed[asked] = super().render_lines(crop)
+        return self._composed[asked]
+
+    def refresh(
+        self, *regions: Region, repaint: bool = True, layout: bool = False, recompose: bool = False
+    ) -> Self:
+        """Forget what was composed, and have it composed anew."""
+        self._composed = {}
+        return super().refresh(*regions, repaint=repaint, layout=layout, recompose=recompose)
 
     def render_line(self, y: int) -> Strip:
         """Return one painted line."""
@@ -96,17 +121,34 @@ class Instrument(Widget, can_focus=False):
     def _make_styles(self) -> dict[Tone, Style]:
         """Return the styles on this widget's ground, all of them the stale one where its data is old."""
         ground = Style(bgcolor=self.background_colors[1].rich_color)
-        old = self.has_class(_STALE_CLASS)
-        self._styles = {tone: ground + STYLES[Tone.STALE if old else tone] for tone in Tone}
+        old, styles = self.has_class(_STALE_CLASS), styles_of(self.app.theme)
+        self._styles = {tone: ground + styles[Tone.STALE if old else tone] for tone in Tone}
         return self._styles
 
     def notify_style_update(self) -> None:
         """Forget the styles when the style sheet, a class or the theme has changed."""
         super().notify_style_update()
         self._styles = {}
+        self._composed = {}
 
     def on_resize(self, _event: events.Resize) -> None:
         """Draw the last frame anew for the new size."""
         self._rows = []
         if self._frame is not None:
             self.show(self._frame)
+
+
+def _rounded(age: float) -> str:
+    """Return an age as long as it is not old: in steps that a healthy one never leaves, so that nothing flickers."""
+    return f"<{_FRESH_S:g} s" if age < _FRESH_S else span_of_time(math.floor(10.0 * age) / 10.0)
+
+
+def _bands(lines: list[int], width: int) -> list[Region]:
+    """Return the regions of lines in ascending order; neighbours are one, which is cheaper to compose."""
+    bands: list[Region] = []
+    for y in lines:
+        if bands and bands[-1].bottom == y:
+            bands[-1] = Region(0, bands[-1].y, width, y + 1 - bands[-1].y)
+        else:
+            bands.append(Region(0, y, width, 1))
+    return bands

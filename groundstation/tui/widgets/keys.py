@@ -19,6 +19,16 @@ from groundstation.tui.widgets.instrument import Instrument
 Item = tuple[Row, str]
 
 _OTHERS = (("?", "Help", "app.help"), ("q", "Quit", "app.quit"))
+# The first are written even where there is little room.
+_LOOKS = (
+    ("v", "View", "screen.view"),
+    ("+", "Zoom", "screen.zoom(1)"),
+    ("g", "Follow", "screen.follow"),
+    ("⇥", "Instrument", "screen.page(1)"),
+    ("o", "Seen", "app.acknowledge"),
+    ("b", "Bell", "app.mute"),
+    ("^t", "Theme", "app.next_theme"),
+)
 # From here on words are written in full.
 _FULL = 110
 _SHORT = 3
@@ -69,7 +79,7 @@ def _acts(frame: Frame) -> Iterator[Item]:
             continue
         possible = not frame.hindrances[act.name]
         yield _act(act.key, act.label, possible=possible), f"app.act('{act.name}')"
-    for key, label, action in _OTHERS:
+    for key, label, action in (*_OTHERS, *_LOOKS):
         yield _act(key, label, possible=True), action
 
 

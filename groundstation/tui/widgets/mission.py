@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import math
 
-from groundstation.messages import MissionProgress
-from groundstation.training.director import Figures
 from groundstation.training.mission import Mission as MissionFile
 from groundstation.training.score import score_of
 from groundstation.tui.frame import Frame
@@ -14,7 +12,7 @@ from groundstation.tui.rows import UNKNOWN, Row, clock, gauge, quantity, width_o
 from groundstation.tui.theme import Tone
 from groundstation.tui.widgets.instrument import Instrument
 
-_LABEL = 13
+_LABEL = 12
 # What is only known once the target has been held.
 _AT_THE_END = frozenset({"precision", "time"})
 
@@ -28,7 +26,7 @@ class Mission(Instrument):
 
     def data_age(self, frame: Frame) -> float:
         """Age of the progress; without a mission there is none to be old."""
-        return 0.0 if frame.run.mission is None else frame.age(frame.snapshot.progress)
+        return math.nan if frame.run.mission is None else frame.age(frame.snapshot.progress)
 
     def draw(self, frame: Frame, width: int, height: int) -> list[Row]:
         """Draw as many rows as there is room for."""
@@ -48,52 +46,49 @@ def _progress(frame: Frame, mission: MissionFile, width: int) -> list[Row]:
     progress, figures = frame.snapshot.progress, frame.figures
     if progress is None:
         return [_row("stage", (UNKNOWN, Tone.MUTED))]
-    away = progress.target_distance
-    target = f", target {quantity(away, 'm', 1)} away" if math.isfinite(away) else ""
-    rows = [_row("stage", (words(progress.stage) + target, Tone.STRONG))]
+    stage = words(progress.stage)
+    rows: list[Row] = []
     if progress.legs:
         done = min(progress.leg, progress.legs)
+        figure = f" {done} of {progress.legs} points"
+        head = _row("way")
+        strip = gauge(done, progress.legs, width - width_of(head) - len(figure) - 1, Tone.TARGET)
         rows.append(
-            _measured("way", (done / progress.legs, f"{done} of {progress.legs} points"), width, Tone.TARGET)
+            [
+                *head,
+                *((text, Tone.TARGET if tone is Tone.WARN else tone) for text, tone in strip),
+                (figure, Tone.TEXT),
+            ]
         )
-    if figures is not None:
-        rows.append(_clock(figures.duration, mission.criteria.time_limit_s))
-    return [*rows, _obstacles(progress, figures)]
-
-
-def _clock(duration: float, limit: float) -> Row:
-    late = duration > limit
-    spent = (f"{'▲ ' if late else ''}{clock(duration)}", Tone.WARN if late else Tone.STRONG)
-    return _row("clock", spent, (f" of {clock(limit)} min", Tone.MUTED))
-
-
-def _obstacles(progress: MissionProgress, figures: Figures | None) -> Row:
-    touched, tone = "no collision", Tone.TEXT
-    if progress.collisions:
-        touched, tone = (
-            f"▲ {progress.collisions} collision{'s' if progress.collisions > 1 else ''}",
-            Tone.WARN,
-        )
-    near = f", {quantity(progress.clearance, 'm', 1)} clear" if math.isfinite(progress.clearance) else ""
-    flown = (
-        f", {figures.gates - figures.gates_missed} of {figures.gates} gates"
-        if figures and figures.gates
+    target = (
+        f", target {quantity(progress.target_distance, 'm', 1)} away"
+        if math.isfinite(progress.target_distance)
         else ""
     )
-    return _row("obstacles", (touched, tone), (near + flown, Tone.TEXT))
-
-
-def _measured(label: str, reached: tuple[float, str], width: int, tone: Tone) -> Row:
-    """Return a row with a bar of a share, 0 to 1, and its figure."""
-    share, figure = reached
-    head = _row(label)
-    strip = gauge(share, 1.0, width - width_of(head) - len(figure) - 2, tone)
-    # More is better here: a full bar is no warning.
-    return [
-        *head,
-        *((text, tone if of is Tone.WARN else of) for text, of in strip),
-        (f" {figure}", Tone.STRONG),
-    ]
+    rows.insert(0, _row("stage", (f"{stage}{target}", Tone.STRONG)))
+    if figures is not None:
+        limit = mission.criteria.time_limit_s
+        late = figures.duration > limit
+        tone = Tone.WARN if late else Tone.STRONG
+        rows.append(
+            _row(
+                "clock",
+                (f"{'▲ ' if late else ''}{clock(figures.duration)}", tone),
+                (f" of {clock(limit)} min", Tone.MUTED),
+            )
+        )
+    touched = (
+        (f"▲ {progress.collisions} collisions", Tone.WARN)
+        if progress.collisions
+        else ("no collision", Tone.TEXT)
+    )
+    gates = (
+        [(f", {figures.gates - figures.gates_missed} of {figures.gates} gates", Tone.TEXT)]
+        if figures and figures.gates
+        else []
+    )
+    near = (f", {quantity(progress.clearance, 'm', 1)} clear", Tone.TEXT)
+    return [*rows, _row("obstacles", touched, *([near] if math.isfinite(progress.clearance) else []), *gates)]
 
 
 def _score(frame: Frame, mission: MissionFile, width: int) -> list[Row]:
@@ -105,10 +100,17 @@ def _score(frame: Frame, mission: MissionFile, width: int) -> list[Row]:
     held = not math.isnan(figures.final_error)
     rows = [_row("score", (f"{score.points:.0f}", Tone.STRONG), (" of 100 points so far", Tone.MUTED))]
     for part in score.parts:
+        head: Row = [(f"   {part.name:<{_LABEL - 2}}", Tone.MUTED)]
         if part.name in _AT_THE_END and not held:
-            rows.append(_row(f"  {part.name}", ("comes when the target is held", Tone.FAINT)))
-        else:
-            rows.append(
-                _measured(f"  {part.name}", (part.share, f"{100.0 * part.share:3.0f} %"), width, Tone.OK)
-            )
+            rows.append([*head, ("comes when the target is held", Tone.FAINT)])
+            continue
+        figure = f" {100.0 * part.share:3.0f} %"
+        strip = gauge(part.share, 1.0, width - width_of(head) - len(figure) - 1, Tone.OK)
+        rows.append(
+            [
+                *head,
+                *((text, Tone.OK if tone is Tone.WARN else tone) for text, tone in strip),
+                (figure, Tone.STRONG),
+            ]
+        )
     return rows

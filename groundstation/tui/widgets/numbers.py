@@ -6,8 +6,8 @@ import math
 from typing import NamedTuple
 
 from groundstation.frames import heading_from_yaw
-from groundstation.tui.alerts import distance_to_target
 from groundstation.tui.frame import Frame
+from groundstation.tui.hints import distance_to_target
 from groundstation.tui.rows import UNKNOWN, Row, quantity, width_of
 from groundstation.tui.theme import Tone
 from groundstation.tui.widgets.instrument import Instrument

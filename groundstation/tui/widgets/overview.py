@@ -22,6 +22,7 @@ from groundstation.tui.widgets.instrument import Instrument
 from groundstation.tui.wireframe import solids
 
 _NAMES_FROM = 60
+_INSIDE_EVERY = 2
 # Older echoes may have gone, s. As the pilot calls them where it guards.
 _ECHOES_S = 0.5
 _SENSOR = "sensor"
@@ -74,7 +75,7 @@ class Overview(Instrument):
         """See the flight from the next place."""
         order = list(Sight)
         self.sight = order[(order.index(self.sight) + 1) % len(order)]
-        self.border_title = self.sight.value
+        self.title = self.sight.value
         self._again()
 
     def follow_or_whole(self) -> None:
@@ -101,6 +102,10 @@ class Overview(Instrument):
         """Zoom out."""
         self.zoom(-1)
         event.stop()
+
+    def every(self) -> int:
+        """Draw a flat map in every frame; in the other views nearly every line changes, and fewer are smooth."""
+        return self.EVERY if self.sight.flat else _INSIDE_EVERY
 
     def data_age(self, frame: Frame) -> float:
         """Age of the vehicle's state."""

@@ -38,9 +38,11 @@ class Stick(Instrument):
 
     def __init__(self, hand: Hand | None, *, id: str | None = None) -> None:  # noqa: A002 - Textual's own name
         super().__init__(id=id)
-        self.border_title = "stick" if hand is not None else "handle"
+        self.title = "stick" if hand is not None else "handle"
         self._hand = hand
         self._held: int | None = None
+        self._empty: Canvas | None = None
+        self._empty_of: tuple[int, int, int | None] = (0, 0, None)
 
     def data_age(self, frame: Frame) -> float:
         """Age of the handle's record."""
@@ -48,7 +50,7 @@ class Stick(Instrument):
 
     def draw(self, frame: Frame, width: int, height: int) -> list[Row]:
         """Draw both pads and, under them, what they do."""
-        canvas = Canvas(width, height)
+        canvas = self._pads(width, height).copy()
         handle = shares(frame)
         force = _force_shares(frame)
         wanted = frame.stick or CENTRED
@@ -56,7 +58,6 @@ class Stick(Instrument):
             zip(pads(width, height), ((YAW, UP), (LEFT, FORWARD)), strict=True)
         ):
             across, upward = axes
-            pad.draw(canvas, held=index == self._held)
             pull = (-force[LEFT], force[FORWARD]) if index else (0.0, force[UP])
             at = (-handle[across], handle[upward])
             asked = (-wanted[across], wanted[upward])
@@ -64,10 +65,20 @@ class Stick(Instrument):
                 pad.ring(canvas, asked)
             pad.arrow(canvas, at, pull)
             pad.knob(canvas, at)
-            caption = _CAPTIONS[index]
-            if len(caption) < 2 * pad.columns:
-                canvas.letters(pad.column + (pad.columns - len(caption)) // 2, pad.rows, caption, Tone.MUTED)
         return canvas.to_rows()
+
+    def _pads(self, width: int, height: int) -> Canvas:
+        """Return the pads without a handle; drawn once, and again for another size or a hand that takes hold."""
+        if self._empty is None or self._empty_of != (width, height, self._held):
+            self._empty = Canvas(width, height)
+            self._empty_of = (width, height, self._held)
+            for index, pad in enumerate(pads(width, height)):
+                pad.draw(self._empty, held=index == self._held)
+                caption = _CAPTIONS[index]
+                if len(caption) < 2 * pad.columns:
+                    column = pad.column + (pad.columns - len(caption)) // 2
+                    self._empty.letters(column, pad.rows, caption, Tone.MUTED)
+        return self._empty
 
     def on_mouse_down(self, event: events.MouseDown) -> None:
         """Take hold of the pad under the pointer."""
@@ -177,11 +188,12 @@ class Pad:
         x, y = self._place(at)
         reach = length * self._reach + _KNOB
         end_x, end_y = x + pull[0] / length * reach, y - pull[1] / length * reach
-        canvas.line([x, end_x], [y, end_y], Tone.FORCE)
         angle = math.atan2(pull[1], pull[0])
-        for side in (2.6, -2.6):
-            barb = (end_x + 3 * math.cos(angle + side), end_y - 3 * math.sin(angle + side))
-            canvas.line([end_x, barb[0]], [end_y, barb[1]], Tone.FORCE)
+        barbs = [
+            (end_x + 3 * math.cos(angle + side), end_y - 3 * math.sin(angle + side)) for side in (2.6, -2.6)
+        ]
+        points = [(x, y), (end_x, end_y), barbs[0], (end_x, end_y), barbs[1]]
+        canvas.line([point[0] for point in points], [point[1] for point in points], Tone.FORCE)
 
     def _place(self, at: tuple[float, float]) -> tuple[float, float]:
         across, upward = (max(-1.0, min(1.0, share)) if math.isfinite(share) else 0.0 for share in at)

@@ -8,7 +8,7 @@ from groundstation.messages import Severity, Stream
 from groundstation.tui import judge
 from groundstation.tui.frame import REPORT_STALE_S, STATUS_STALE_S, Frame
 from groundstation.tui.notes import words
-from groundstation.tui.rows import Row, quantity
+from groundstation.tui.rows import UNKNOWN, Row, quantity
 from groundstation.tui.theme import MARKS, TONES, Tone
 from groundstation.tui.widgets.instrument import Instrument
 
@@ -25,11 +25,11 @@ class System(Instrument):
     def draw(self, frame: Frame, width: int, height: int) -> list[Row]:
         """Draw what is known."""
         snapshot = frame.snapshot
-        rows = _processes(frame)
+        rows = [*_processes(frame), *_ages(frame)]
         rows += _aged(_servo(frame), frame.age(snapshot.servo), REPORT_STALE_S)
         rows += _aged(_link(frame), frame.age(snapshot.status), STATUS_STALE_S)
         rows += _aged(_device(frame), frame.age(snapshot.device), REPORT_STALE_S)
-        return [*rows, *_files(frame, width)][:height]
+        return [*rows, *_screen(frame), *_state_age(frame), *_files(frame, width)][:height]
 
 
 def _aged(rows: list[Row], age: float, limit: float) -> list[Row]:
@@ -57,6 +57,40 @@ def _processes(frame: Frame) -> list[Row]:
     return rows
 
 
+def _ages(frame: Frame) -> list[Row]:
+    """Return how old each record is."""
+    shown = frame.snapshot
+    steering = (("handle", shown.handle), ("state", shown.vehicle), ("setpoint", shown.setpoint))
+    others = (
+        ("pilot", shown.pilot),
+        ("link", shown.status),
+        ("servo", shown.servo),
+        ("device", shown.device),
+    )
+    return [
+        _row(label, (" ".join(f"{name} {_seconds(frame.age(record))}" for name, record in part), Tone.TEXT))
+        for label, part in (("ages, s", steering), ("", others))
+    ]
+
+
+def _seconds(age: float) -> str:
+    """Write an age in four cells."""
+    return f"{age:.2f}" if age < 10.0 else f"{age:4.0f}" if math.isfinite(age) else f"{UNKNOWN:>4}"
+
+
+def _screen(frame: Frame) -> list[Row]:
+    full = frame.run.settings.rates.screen
+    if not math.isfinite(frame.paint_hz):
+        return []
+    slower = frame.paint_hz < 0.99 * full
+    words = "▲ the terminal is slow" if slower else "as often as is asked for"
+    return [
+        _row(
+            "painting", (f"{quantity(frame.paint_hz, 'Hz', 0)}, {words}", Tone.WARN if slower else Tone.TEXT)
+        )
+    ]
+
+
 def _servo(frame: Frame) -> list[Row]:
     servo = frame.snapshot.servo
     if servo is None:
@@ -74,15 +108,20 @@ def _servo(frame: Frame) -> list[Row]:
 
 
 def _link(frame: Frame) -> list[Row]:
-    status, pilot = frame.snapshot.status, frame.snapshot.pilot
-    rows: list[Row] = []
-    if status is not None:
-        stream = _STREAMS.get(status.streaming, "unknown")
-        counts = f"{status.sent} sent, {status.dropped} kept back, stream {stream}"
-        rows.append(_row("setpoints", (counts, Tone.TEXT)))
-    if pilot is not None and math.isfinite(pilot.state_age):
-        rows.append(_row("state age", (quantity(1000 * pilot.state_age, "ms", 0), Tone.TEXT)))
-    return rows
+    status = frame.snapshot.status
+    if status is None:
+        return []
+    stream = _STREAMS.get(status.streaming, "unknown")
+    counts = f"{status.sent} sent, {status.dropped} kept back, stream {stream}"
+    return [_row("setpoints", (counts, Tone.TEXT))]
+
+
+def _state_age(frame: Frame) -> list[Row]:
+    """Return how old the vehicle's state was when the pilot last used it."""
+    pilot = frame.snapshot.pilot
+    if pilot is None or not math.isfinite(pilot.state_age):
+        return []
+    return [_row("state", (f"{quantity(1000 * pilot.state_age, 'ms', 0)} old where it is used", Tone.TEXT))]
 
 
 def _device(frame: Frame) -> list[Row]:

@@ -21,7 +21,7 @@ _LOWERED = 0.99
 class Tracking(Instrument):
     """The error as bars against the leash; with room the hand's and the vehicle's position, and K₁ by axis."""
 
-    BORDER_TITLE = "position error  p̃ = p_h − p"
+    BORDER_TITLE = "error p̃ = p_h − p"
     EVERY = 3
     STALE_S = 0.5
 

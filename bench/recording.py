@@ -115,6 +115,13 @@ def _publish(bus: Bus, recorder: int, rates: tuple[int, int, int], seconds: floa
     return counts, 100.0 * (_cpu(recorder) - used) / (time.monotonic() - wall)
 
 
+def _handle(t: float, row: tuple[float, ...]) -> Handle:
+    return Handle(
+        t=t, position=row[:3], velocity=row[3:6], force=row[6:9], yaw=row[9], device_t=t - 1e-4 * row[10],
+        homed=1, present=1,
+    )  # fmt: skip
+
+
 def _pilot(t: float, row: tuple[float, ...]) -> PilotState:
     return PilotState(
         t=t, p_h=row[:4], p_h_rate=row[4:8], error=row[8:12], v_ref=row[12:16], v_safe=row[16:20], v_c=row[20:24],

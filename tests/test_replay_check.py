@@ -190,7 +190,7 @@ def test_an_on_screen_stick_that_falls_silent_replays_the_same(tmp_path):
 ACTS = st.sampled_from(["run", "silent", "deaf", "another", "unhomed", "engage", "move", "invalid", "late"])
 
 
-@settings(max_examples=8, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=5, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(st.lists(ACTS, min_size=3, max_size=9), st.integers(0, 40))
 def test_whatever_device_and_vehicle_do_it_replays_the_same(tmp_path_factory, acts, opening):
     flown = Flown(tmp_path_factory.mktemp("any") / "flight", opening=opening)

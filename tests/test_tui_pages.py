@@ -386,7 +386,7 @@ async def test_a_viewer_that_cannot_show_it_says_why(tmp_path):
 
 async def test_the_hand_is_coupled_from_preflight_and_alarms_are_taken_as_known_there():
     async with cockpit(AIR) as scene:
-        await scene.press("f7", "enter", "e")
+        await scene.press("f7", "o", "e")
         assert scene.reader.commands == [CommandKind.ENGAGE]
         assert any("wrong" in words for words in scene.notices())
         await scene.press("escape", "l", "f7")

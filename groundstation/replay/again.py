@@ -171,20 +171,15 @@ class Again:
 
     def _hear(self, t: float, known: list[float], now_known: list[float]) -> None:
         """Put on the bus what a tick knew and the one before did not."""
-        records = self._records
-        tables = (
-            (VEHICLE_STATE, records.states),
-            (VEHICLE_STATUS, records.statuses),
-            (OBSTACLES, records.ranges),
-        )
-        for place, (topic, table) in enumerate(tables):
+        states, statuses, ranges, commands = self._records
+        heard = ((VEHICLE_STATE, states), (VEHICLE_STATUS, statuses), (OBSTACLES, ranges))
+        for place, (topic, records) in enumerate(heard):
             if now_known[place] != known[place]:
-                record = table.get(now_known[place])
+                record = records.get(now_known[place])
                 if record is None:
                     raise self._lost(t, topic.name)
                 self._bus.newest[topic.name] = record
         if taken := int(now_known[4] - known[4]):
-            commands = self._records.commands
             end = next((n for n, each in enumerate(commands, start=1) if each.t == now_known[3]), 0)
             if end < taken:
                 raise self._lost(t, COMMAND.name)

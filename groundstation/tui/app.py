@@ -29,6 +29,7 @@ from groundstation.tui.alerts import conditions
 from groundstation.tui.checks import red
 from groundstation.tui.choices import CHOICES, PRESETS_EXPLAINED, Choice
 from groundstation.tui.commanding import Commanding
+from groundstation.tui.everywhere import KEYS
 from groundstation.tui.frame import Frame, Reader, Supervisor, workspace
 from groundstation.tui.guarding import GuardWatch
 from groundstation.tui.hand import Hand, StickSender
@@ -66,9 +67,7 @@ def _everywhere() -> list[BindingType]:
         *urgent,
         *pages,
         *releases,
-        Binding("o,O", "acknowledge", "Alarms seen", show=False),
-        Binding("b,B", "mute", "Bell on/off", show=False),
-        Binding("ctrl+t", "next_theme", "Next theme", show=False, priority=True),
+        *KEYS,
         Binding("f1", "help", "Help", show=False),
         Binding("ctrl+c,ctrl+q", "quit", "Quit", show=False, priority=True),
     ]
@@ -255,11 +254,13 @@ class FlightApp(Commanding):
 
     def action_acknowledge(self) -> None:
         """Take all alarms as seen."""
-        self._alarms.acknowledge()
+        if not self._alarms.acknowledge():
+            self.notify("Nothing new is wrong.", timeout=2.0)
 
     def action_mute(self) -> None:
         """Silence the bell, or let it ring again."""
         self._alarms.muted = not self._alarms.muted
+        self.notify(f"Bell {'off' if self._alarms.muted else 'on'}.", timeout=2.0)
 
     def action_help(self) -> None:
         """Show the keys."""

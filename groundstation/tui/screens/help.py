@@ -17,6 +17,7 @@ from groundstation.messages import CommandKind
 from groundstation.tui.acts import ACTS, URGENT
 from groundstation.tui.buttons import button_map
 from groundstation.tui.choices import CHOICES, CUES
+from groundstation.tui.everywhere import KEYS
 from groundstation.tui.pages import PAGES
 from groundstation.tui.screens.dialog import Dialog
 from groundstation.tui.screens.flight import STEPS, FlightScreen
@@ -24,7 +25,7 @@ from groundstation.tui.theme import STYLES, Tone
 
 # Bindings that come from tables of their own, or are explained in words.
 _TABLED = ("app.act", "app.choose", "app.help", "app.quit", "step", "centre")
-_WRITTEN = {"plus": "+", "minus": "−", "shift+tab": "⇧Tab", "tab": "Tab", "enter": "Enter"}
+_WRITTEN = {"plus": "+", "minus": "−", "shift+tab": "⇧Tab", "tab": "Tab", "enter": "Enter", "ctrl+t": "^t"}
 
 
 class Help(Dialog):
@@ -100,7 +101,7 @@ def help_table(buttons: Buttons) -> Table:
 
 def _other_keys() -> Iterator[tuple[str, str]]:
     """Yield the keys of the flight screen that no table has, with what they do."""
-    for binding in FlightScreen.BINDINGS:
+    for binding in (*KEYS, *FlightScreen.BINDINGS):
         assert isinstance(binding, Binding)
         if not binding.action.startswith(_TABLED):
             key = binding.key.partition(",")[0]

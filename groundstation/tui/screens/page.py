@@ -44,8 +44,6 @@ def _bindings() -> list[BindingType]:
         *acts,
         *moves,
         Binding("escape", "back", "Back to the flight", show=False),
-        Binding("enter", "app.acknowledge", "Seen", show=False),
-        Binding("z,Z", "app.theme_next", "Next theme", show=False),
         Binding("question_mark", "app.help", "Help", show=False),
         Binding("q,Q", "app.quit", "Quit", show=False),
     ]

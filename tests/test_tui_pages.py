@@ -27,6 +27,15 @@ from groundstation.vehicle.failsafes import FAILSAFES
 from sim.autopilot.parameters import SPECS
 
 GROUND = 0.3
+
+
+@pytest.fixture(autouse=True)
+def logs(tmp_path, monkeypatch):
+    """The canned run records into a folder below where the program was started."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "logs").mkdir()
+
+
 # How to get to every screen, dialog and text field there is, and what the screen is then.
 EVERYWHERE = {
     "flight": ((), FlightScreen),
@@ -186,6 +195,26 @@ async def test_what_is_wrong_is_red_with_what_to_do(spoil, state, remedy):
         red = next(line for line in lines(scene).splitlines() if line.startswith("■ ") and state in line)
         assert remedy in red
         assert "■ 1 to mend" in lines(scene)
+
+
+async def test_a_recording_that_cannot_be_written_is_red_and_a_full_disk_is_cautioned_about(
+    tmp_path, monkeypatch
+):
+    async with cockpit(GROUND, size=(120, 60)) as scene:
+        read(scene)
+        await scene.press("f7")
+        for folder, words in ((tmp_path / "none", "■ recording"), (tmp_path, "✓ recording")):
+            scene.app._flight_run = msgspec.structs.replace(scene.app._flight_run, log=str(folder / "flight"))
+            await scene.see()
+            assert words in lines(scene)
+        monkeypatch.setattr("groundstation.tui.checks.shutil.disk_usage", lambda _: Disk())
+        await scene.see()
+        assert "▲ recording" in lines(scene)
+        assert "0.5 GB free" in lines(scene)
+
+
+class Disk:
+    free = 0.5e9
 
 
 async def test_a_recorder_that_ended_is_red():

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+import os
+import shutil
 from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
@@ -14,6 +16,7 @@ from groundstation.tui.notes import words
 from groundstation.tui.rows import quantity, span_of_time
 from groundstation.vehicle.failsafes import FAILSAFES, verdict
 
+_GB = 1e9
 _OK, _CAUTION, _DANGER = Severity.INFO, Severity.WARNING, Severity.ALARM
 
 
@@ -166,7 +169,12 @@ def _recording(frame: Frame) -> Check:
         return Check("recording", _DANGER, "the recorder does not run", "quit and start again")
     if state == "starting":
         return Check("recording", _CAUTION, "starting", "wait")
-    return Check("recording", _OK, f"to {folder}")
+    if not os.access(folder, os.W_OK):
+        return Check("recording", _DANGER, f"{folder} cannot be written", "start with another --logs")
+    free, least = shutil.disk_usage(folder).free / _GB, frame.run.settings.recording.warn_gb
+    if free < least:
+        return Check("recording", _CAUTION, f"{quantity(free, 'GB', 1)} free on the disk", "make room")
+    return Check("recording", _OK, f"to {folder}, {quantity(free, 'GB', 0)} free")
 
 
 def _failsafes(frame: Frame) -> Iterator[Check]:

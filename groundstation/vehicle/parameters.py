@@ -20,7 +20,8 @@ from groundstation.vehicle.failsafes import FAILSAFES
 
 # A failsafe that the vehicle did not tell is asked for again after this, s.
 _AGAIN_S = 2.0
-_END_S = 5.0
+# The process is given 3 s to end in, and has its log to close after this, s.
+_END_S = 1.5
 # An integer travels in a float's 32 bits.
 _WHOLE_MOST = 2**31
 

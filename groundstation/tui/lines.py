@@ -41,7 +41,7 @@ class Lines(Instrument):
         id: str = "lines",  # noqa: A002 - Textual's own name
     ) -> None:
         super().__init__(id=id)
-        self.border_title = title
+        self.title = self.border_title = title
         self._source, self._chosen, self._follow = source, chosen, follow
         self._count = self._top = 0
         self.at = 0

@@ -77,7 +77,7 @@ class Log(Page):
 
     def _tell(self) -> None:
         if self.lines is not None:
-            self.lines.border_title = f"log: {_LEVELS[self._least]}"
+            self.lines.title = f"log: {_LEVELS[self._least]}"
             self.lines.redraw()
 
     def _rows(self, frame: Frame, width: int) -> list[Row]:

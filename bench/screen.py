@@ -26,7 +26,7 @@ COLUMNS, ROWS = 200, 60
 # The longest that a flight without a screen stays engaged is some 30 s.
 LONG_S, SHORT_S = 20.0, 8.0
 FROZEN_S = 1.0
-_WARM_S = 3.0
+_WARM_S = 6.0
 _TRIES = 4
 # Arrow keys: forward, left, back, right, and the centre.
 _MOVES = ("\x1b[A", "\x1b[D", "\x1b[B", "\x1b[C", " ")

@@ -25,7 +25,7 @@ from sim.environment.shapes import extent
 _BEHIND_M, _ABOVE_M, _DOWN = 3.0, 1.5, -0.34
 # What is seen across the picture at zoom 1, rad.
 _ANGLE = math.radians(80.0)
-_GROUND_M, _DIM_M, _GRID_DIM_M, _HORIZON_M = 14.0, 12.0, 5.0, 2000.0
+_GROUND_M, _DIM_M, _GRID_DIM_M, _HORIZON_M = 10.0, 12.0, 5.0, 2000.0
 _FENCE_POSTS = 16
 # This far around a vehicle nothing behind it is drawn, m.
 _FREE_M = 0.55
@@ -93,7 +93,7 @@ def _standing(frame: Frame, eye: Camera, mission: Mission | None, fence: Fence) 
     angles = np.linspace(0.0, math.tau, 73)
     skyline = np.stack([np.cos(angles), np.sin(angles), np.zeros(73)], axis=1) * _HORIZON_M + np.array(place)
     scene = [
-        Lines(wireframe.ground(place, _GROUND_M), Tone.GRID, 2, far=_GRID_DIM_M),
+        Lines(wireframe.ground(place, _GROUND_M), Tone.GRID, 3, far=_GRID_DIM_M),
         Lines(wireframe.path(skyline), Tone.MUTED),
     ]
     if fence.radius > 0.0:

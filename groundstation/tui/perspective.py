@@ -14,7 +14,7 @@ from groundstation.tui.theme import Tone
 Floats = NDArray[np.float64]
 
 # Whether a dot is hidden is asked for one in so many.
-_ASKED = 3
+_ASKED = 4
 # Of lines that are seen through bodies, one dot in so many shows there.
 _THROUGH = 4
 

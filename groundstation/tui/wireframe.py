@@ -167,7 +167,7 @@ def ground(eye: tuple[float, float, float], reach: float) -> Floats:
         eye: World, m.
         reach: How far it goes, m.
     """
-    step = next((step for step in (1.0, 2.0, 5.0, 10.0, 20.0, 50.0) if 10 * step >= reach), 100.0)
+    step = next((step for step in (1.0, 2.0, 5.0, 10.0, 20.0, 50.0) if 6 * step >= reach), 100.0)
     middle = [round(value / step) * step for value in eye[:2]]
     count = math.floor(reach / step)
     ticks: Floats = np.arange(-count, count + 1, dtype=np.float64) * step

@@ -31,6 +31,7 @@ from groundstation.messages import (
     VehicleState,
 )
 from groundstation.recording import schema
+from groundstation.recording.parts import parts_of
 from groundstation.review.flight import Flight
 from groundstation.run import Run, write_run
 from groundstation.run_folder import new_run_id, sweep
@@ -68,7 +69,7 @@ def _measured(load: str, seconds: float) -> tuple[float, float, int, int]:
             sweep(run.run_id)
         flight = Flight(run.recording)
         kept = [len(flight.series(each).t) for each in (schema.HANDLE_FORCE, schema.ERROR, schema.POSITION)]
-        size = run.recording.stat().st_size / 1e6 / ((seconds + _WARM_S) / 60.0)
+        size = sum(part.stat().st_size for part in parts_of(run.recording)) / 1e6 / ((seconds + _WARM_S) / 60.0)
         return share, size, sum(counts), sum(counts) - sum(kept)
 
 

@@ -651,7 +651,8 @@ class Topic(Generic[R]):
 HANDLE = Topic("handle", Handle, depth=4096, history=1024)
 TICK_INPUTS = Topic("tick_inputs", TickInputs, depth=512, history=64)
 SETPOINT = Topic("setpoint", Setpoint, depth=256, wakes=True)
-PILOT_STATE = Topic("pilot_state", PilotState, depth=256, history=64)
+# Seconds of it at any rate up to the servo's own, should the recorder be held up.
+PILOT_STATE = Topic("pilot_state", PilotState, depth=4096, history=64)
 VEHICLE_STATE = Topic("vehicle_state", VehicleState, depth=1024, history=128)
 ATTITUDE = Topic("attitude", Attitude, depth=1024)
 VEHICLE_STATUS = Topic("vehicle_status", VehicleStatus, depth=256, history=64)

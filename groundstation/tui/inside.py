@@ -220,7 +220,9 @@ def _labels(canvas: Canvas, frame: Frame, eye: Camera, solids: Solids) -> None:
 
 def _label(canvas: Canvas, dot: tuple[float, float] | None, words: str, tone: Tone) -> None:
     if dot is not None:
-        canvas.letters(int(dot[0] / 2) - len(words) // 2, int(dot[1] / 4), words, tone)
+        # At the edge a name moves inward, for half a figure would be another.
+        column = max(min(int(dot[0] / 2) - len(words) // 2, canvas.columns - len(words)), 0)
+        canvas.letters(column, int(dot[1] / 4), words, tone)
 
 
 def _sights(canvas: Canvas, frame: Frame, eye: Camera) -> None:

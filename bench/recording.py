@@ -69,7 +69,9 @@ def _measured(load: str, seconds: float) -> tuple[float, float, int, int]:
             sweep(run.run_id)
         flight = Flight(run.recording)
         kept = [len(flight.series(each).t) for each in (schema.HANDLE_FORCE, schema.ERROR, schema.POSITION)]
-        size = sum(part.stat().st_size for part in parts_of(run.recording)) / 1e6 / ((seconds + _WARM_S) / 60.0)
+        size = (
+            sum(part.stat().st_size for part in parts_of(run.recording)) / 1e6 / ((seconds + _WARM_S) / 60.0)
+        )
         return share, size, sum(counts), sum(counts) - sum(kept)
 
 

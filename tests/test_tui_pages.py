@@ -23,6 +23,7 @@ from groundstation.tui.screens.dialog import Confirm, Typed
 from groundstation.tui.screens.flight import FlightScreen
 from groundstation.tui.screens.help import Help, help_table
 from groundstation.tui.screens.page import Page
+from groundstation.tui.theme import styles_of
 from groundstation.vehicle.failsafes import FAILSAFES
 from sim.autopilot.parameters import SPECS
 
@@ -398,7 +399,7 @@ async def test_the_hand_is_coupled_from_preflight_and_alarms_are_taken_as_known_
 
 def test_the_help_has_every_key_that_is_bound():
     console = Console(width=100, record=True, file=io.StringIO())
-    console.print(help_table(Buttons()))
+    console.print(help_table(Buttons(), styles_of("dark")))
     written = console.export_text().lower()
     for binding in (*FlightApp.BINDINGS, *FlightScreen.BINDINGS):
         if binding.action not in {"centre", "quit", "app.quit"} and "release(" not in binding.action:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from textual.binding import Binding
 
 KEYS = (
-    Binding("o,O", "acknowledge", "Alarms seen", show=False),
-    Binding("b,B", "mute", "Bell on/off", show=False),
-    Binding("ctrl+t", "next_theme", "Next theme", show=False, priority=True),
+    Binding("o,O", "app.acknowledge", "Alarms seen", show=False),
+    Binding("b,B", "app.mute", "Bell on/off", show=False),
+    Binding("ctrl+t", "app.next_theme", "Next theme", show=False, priority=True),
 )

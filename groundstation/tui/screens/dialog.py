@@ -13,6 +13,7 @@ from textual.screen import ModalScreen
 from textual.widgets import Input, Static
 
 from groundstation.tui.acts import ACTS, BY_NAME
+from groundstation.tui.everywhere import KEYS
 
 
 def _urgent() -> list[BindingType]:
@@ -30,6 +31,7 @@ class Dialog(ModalScreen[bool]):
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("escape", "answer(False)", "Back", show=False),
         *_urgent(),
+        *KEYS,
     ]
 
     def action_answer(self, yes: bool) -> None:

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import ClassVar
 
+from rich.style import Style
 from rich.table import Table
 from rich.text import Text
 from textual.app import ComposeResult
@@ -21,7 +22,7 @@ from groundstation.tui.everywhere import KEYS
 from groundstation.tui.pages import PAGES
 from groundstation.tui.screens.dialog import Dialog
 from groundstation.tui.screens.flight import STEPS, FlightScreen
-from groundstation.tui.theme import STYLES, Tone
+from groundstation.tui.theme import Tone, styles_of
 
 # Bindings that come from tables of their own, or are explained in words.
 _TABLED = ("app.act", "app.choose", "app.help", "app.quit", "step", "centre")
@@ -46,55 +47,59 @@ class Help(Dialog):
     def compose(self) -> ComposeResult:
         """Lay out the keys."""
         with VerticalScroll(id="help"):
-            yield Static(help_table(self._buttons))
+            yield Static(help_table(self._buttons, styles_of(self.app.theme)))
 
 
-def help_table(buttons: Buttons) -> Table:
-    """Return the keys as a table of key, name and what it does."""
+def help_table(buttons: Buttons, styles: Mapping[Tone, Style]) -> Table:
+    """Return the keys as a table of key, name and what it does, in the styles of a theme."""
+
+    def heading(words: str) -> Text:
+        return Text(words, styles[Tone.STRONG])
+
     table = Table.grid(padding=(0, 1))
-    table.add_column(justify="right", style=STYLES[Tone.KEY], no_wrap=True)
-    table.add_column(style=STYLES[Tone.TEXT], no_wrap=True)
-    table.add_column(style=STYLES[Tone.MUTED])
+    table.add_column(justify="right", style=styles[Tone.KEY], no_wrap=True)
+    table.add_column(style=styles[Tone.TEXT], no_wrap=True)
+    table.add_column(style=styles[Tone.MUTED])
     for act in ACTS:
         table.add_row(f"{act.key} {act.everywhere.upper()}".strip(), act.label, act.explains)
     table.add_row(
         "", "", f"{URGENT[0].everywhere.upper()} to {URGENT[-1].everywhere.upper()} work over dialogs, too."
     )
-    _section(table, "screens", "Esc or the same key goes back to the flight")
+    _section(table, heading("screens"), "Esc or the same key goes back to the flight")
     for page in PAGES:
         table.add_row(page.key.upper(), page.label, page.explains)
-    _section(table, "choices", "at any time")
+    _section(table, heading("choices"), "at any time")
     for choice in CHOICES:
         if choice.kind is not CommandKind.CUES:
             table.add_row(choice.key, choice.label, choice.explains)
-    _section(table, "cues", "parts of the force; on, or off again")
+    _section(table, heading("cues"), "parts of the force; on, or off again")
     for choice in CUES.values():
         table.add_row(choice.key, choice.name, choice.explains)
-    _section(table, "stick", "on the screen; steps of 20 % that stay")
+    _section(table, heading("stick"), "on the screen; steps of 20 % that stay")
     arrows = {"up": "↑", "down": "↓", "left": "←", "right": "→"}
     for key, _, _, words in STEPS:
         table.add_row(arrows.get(key, key), words)
     table.add_row("space", "centre", "All axes at once; also 0.")
     table.add_row("mouse", "drag", "Press in a pad and drag; letting go centres, in rate mode.")
-    _section(table, "buttons", "of the haptic device, from 0")
+    _section(table, heading("buttons"), "of the haptic device, from 0")
     for number, words in button_map(buttons):
         table.add_row(str(number), "button", words[0].upper() + words[1:] + ".")
-    _section(table, "screen", "")
+    _section(table, heading("screen"), "")
     table.add_row("? F1", "help", "Esc goes back.")
     for key, words in _other_keys():
         table.add_row(key, words, "")
     table.add_row("^p", "palette", "All acts by name.")
     table.add_row("q", "quit", "Asks first in the air; the vehicle holds.")
-    _section(table, "signs", "")
+    _section(table, heading("signs"), "")
     table.add_row("▲ ■", "severity", "Caution, alarm.")
-    table.add_row(Text("abc", STYLES[Tone.STALE]), "slanted", "Old: do not trust it.")
+    table.add_row(Text("abc", styles[Tone.STALE]), "slanted", "Old: do not trust it.")
     table.add_row(
-        Text("□", STYLES[Tone.HAND]), "p_h", "Where the hand wants the vehicle; around it the leash."
+        Text("□", styles[Tone.HAND]), "p_h", "Where the hand wants the vehicle; around it the leash."
     )
-    table.add_row(Text("△ ×", STYLES[Tone.VEHICLE]), "forecast", "Where it will be; where it can stop.")
-    table.add_row(Text("POS", STYLES[Tone.FORCE]), "cue", "In capitals: acts. ○ off, – not in this preset.")
+    table.add_row(Text("△ ×", styles[Tone.VEHICLE]), "forecast", "Where it will be; where it can stop.")
+    table.add_row(Text("POS", styles[Tone.FORCE]), "cue", "In capitals: acts. ○ off, – not in this preset.")
     table.add_row("↓", "gain", "The delay leaves less than is set.")
-    table.add_row(Text("◎", STYLES[Tone.TARGET]), "target", "Where the mission leads.")
+    table.add_row(Text("◎", styles[Tone.TARGET]), "target", "Where the mission leads.")
     table.add_row("+ −", "axes", "Positive is forward, left, up, turning left.")
     return table
 
@@ -108,6 +113,6 @@ def _other_keys() -> Iterator[tuple[str, str]]:
             yield _WRITTEN.get(key, key), binding.description
 
 
-def _section(table: Table, title: str, words: str) -> None:
+def _section(table: Table, title: Text, words: str) -> None:
     table.add_row("", "", "")
-    table.add_row("", Text(title, STYLES[Tone.STRONG]), words)
+    table.add_row("", title, words)

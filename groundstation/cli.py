@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import argparse
 import importlib
+import os
 import sys
 from collections.abc import Callable, Sequence
 from types import ModuleType
@@ -22,6 +23,7 @@ from groundstation.identification import options as identify
 from groundstation.replay import options as replay
 from groundstation.report import options as report
 from groundstation.review import options as review
+from groundstation.terminal import has_screen
 from groundstation.training import options as missions
 
 PROGRAM = "groundstation"
@@ -129,7 +131,7 @@ def _dispatch(parser: argparse.ArgumentParser, asked: argparse.Namespace) -> int
         run = cast(Callable[[argparse.Namespace], int], getattr(importlib.import_module(module), function))
         return run(asked)
     if not asked.sim and not asked.connect:
-        if asked.headless or asked.plain or not (sys.stdin.isatty() and sys.stdout.isatty()):
+        if asked.headless or asked.plain or not has_screen(os.environ):
             parser.print_help()
             return EXIT_BAD_INPUT
         from groundstation import connecting

@@ -8,7 +8,6 @@ import datetime
 import getpass
 import os
 import signal
-import sys
 from collections.abc import Generator
 from pathlib import Path
 from typing import NoReturn
@@ -22,7 +21,7 @@ from groundstation.errors import InputError
 from groundstation.processes import Supervisor, free_port, running
 from groundstation.run import Run
 from groundstation.run_folder import new_run_id, run_folder, sweep_dead_runs
-from groundstation.terminal import terminal_path
+from groundstation.terminal import has_screen, terminal_path
 from groundstation.training.mission import Mission, find_mission, load_mission
 from groundstation.vehicle.transport import parse_url
 from sim.scenario import VehicleChoice
@@ -129,7 +128,7 @@ def _check(asked: argparse.Namespace) -> None:
     if asked.headless and asked.plain:
         raise InputError("--plain is flown by hand and --headless by the scripted hand; choose one.")
     without_screen = asked.headless or asked.plain
-    if not without_screen and not (sys.stdin.isatty() and sys.stdout.isatty()):
+    if not without_screen and not has_screen(os.environ):
         raise InputError(
             "the screen needs a terminal; without one use --plain, or --headless --mission NAME."
         )

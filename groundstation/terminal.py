@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import os
 import sys
+from collections.abc import Mapping
 from pathlib import Path
 
 # Kitty keys off; bracketed paste, focus and mouse reports off; main screen; cursor; plain text.
@@ -12,6 +13,11 @@ _GIVE_BACK = (
     b"\x1b[<u\x1b[?2004l\x1b[?1004l\x1b[?1000l\x1b[?1002l\x1b[?1003l\x1b[?1015l\x1b[?1006l"
     b"\x1b[?1049l\x1b[?25h\x1b[0m\r\n"
 )
+
+
+def has_screen(environment: Mapping[str, str]) -> bool:
+    """Say whether a screen can be shown: on a terminal, or where Textual was given another way, as to a browser."""
+    return "TEXTUAL_DRIVER" in environment or (sys.stdin.isatty() and sys.stdout.isatty())
 
 
 def terminal_path() -> str:

@@ -10,14 +10,24 @@ import shutil
 import subprocess
 import sys
 from pathlib import Path
+from typing import cast
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tests"))
 
-from canned_flight import START, CannedFlight, CannedReader, CannedStick, CannedSupervisor, canned_run  # noqa: E402
+from canned_flight import (  # noqa: E402
+    START,
+    CannedFlight,
+    CannedFollower,
+    CannedReader,
+    CannedStick,
+    CannedSupervisor,
+    canned_run,
+)
 from terminal_svg import crisp  # noqa: E402
 
 from groundstation.console import Snapshot  # noqa: E402
+from groundstation.training.follower import MissionFollower  # noqa: E402
 from groundstation.tui.app import FlightApp  # noqa: E402
 
 SIZES = ((80, 24), (120, 40), (200, 60))
@@ -30,7 +40,8 @@ async def picture(folder: Path, width: int, height: int) -> Path:
     run = canned_run()
     flight = CannedFlight(run)
     reader = CannedReader(flight.snapshot())
-    app = FlightApp(run, reader, CannedSupervisor(), CannedStick(), clock=lambda: START)
+    follower = cast(MissionFollower, CannedFollower(run))
+    app = FlightApp(run, reader, CannedSupervisor(), CannedStick(), follower=follower, clock=lambda: START)
     async with app.run_test(size=(width, height)) as pilot:
         while flight.elapsed < FLOWN_S:
             flight.advance(FRAME_S)

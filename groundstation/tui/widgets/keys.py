@@ -12,6 +12,7 @@ from groundstation.tui.acts import ACTS
 from groundstation.tui.choices import CHOICES, Choice, in_effect
 from groundstation.tui.cues import Part, parts
 from groundstation.tui.frame import Frame
+from groundstation.tui.pages import PAGES
 from groundstation.tui.rows import Row, Span, width_of
 from groundstation.tui.theme import Tone
 from groundstation.tui.widgets.instrument import Instrument
@@ -79,7 +80,8 @@ def _acts(frame: Frame) -> Iterator[Item]:
             continue
         possible = not frame.hindrances[act.name]
         yield _act(act.key, act.label, possible=possible), f"app.act('{act.name}')"
-    for key, label, action in (*_OTHERS, *_LOOKS):
+    pages = ((page.key.upper(), page.label, f"app.page('{page.name}')") for page in PAGES)
+    for key, label, action in (*_OTHERS, *pages, *_LOOKS):
         yield _act(key, label, possible=True), action
 
 

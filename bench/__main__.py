@@ -14,6 +14,7 @@ BENCHES = {
     "help": "processor time of --help",
     "start": "from the command to a vehicle that may take off",
     "step_to_wire": "from a step of the handle to the datagram that carries it",
+    "key_to_wire": "from an urgent key on any screen to the command on its way to the vehicle",
     "models": "steps per second of the rigid body, beside other simulators",
     "paper": "the paper's mission, headless",
     "vehicle": "start, memory and share of a core of the simulated vehicle",

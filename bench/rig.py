@@ -28,6 +28,7 @@ from groundstation.run_folder import run_folder
 
 ROOT = Path(__file__).resolve().parents[1]
 SETPOINT_ID = 84
+_COMMAND_LONG = (76).to_bytes(3, "little")
 _FRAME = b"\x1b[?2026h"
 ROLES = {
     "groundstation.recording.recorder": "recorder",
@@ -41,6 +42,7 @@ class Tap:
 
     Attributes:
         setpoints: (time, payload) of every datagram with a setpoint, on its way to the vehicle.
+        commands: (time, command) of every COMMAND_LONG on its way to the vehicle.
         heard: (time, datagram) of all that the vehicle said.
     """
 
@@ -50,6 +52,7 @@ class Tap:
         self._peers: dict[socket.socket, object] = {}
         self._running = True
         self.setpoints: list[tuple[float, bytes]] = []
+        self.commands: list[tuple[float, int]] = []
         self.heard: list[tuple[float, bytes]] = []
         self.program_port = int(self._program.getsockname()[1])
         self.vehicle_port = int(self._vehicle.getsockname()[1])
@@ -78,6 +81,8 @@ class Tap:
                     self.heard.append((now, data))
                 if ready is self._program and data[0] == 0xFD and data[7] == SETPOINT_ID:
                     self.setpoints.append((now, data[14 : 10 + data[1]].ljust(49, b"\0")))
+                if ready is self._program and data[0] == 0xFD and data[7:10] == _COMMAND_LONG:
+                    self.commands.append((now, int.from_bytes(data[38:40], "little")))
                 if (to := self._peers.get(other[ready])) is not None:
                     with contextlib.suppress(OSError):
                         other[ready].sendto(data, to)

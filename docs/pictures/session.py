@@ -35,8 +35,8 @@ COLOURS = 96
 # What is pressed in the air, and how long it is flown on with it, s: round the crate, between balloon and column.
 _AHEAD, _RIGHT, _LEFT = "\x1b[A", "\x1b[C", "\x1b[D"
 FLIGHT = (
-    (3 * _AHEAD + 2 * _LEFT, 2.6), (2 * _RIGHT, 2.4), ("v", 0.4), (3 * _RIGHT, 2.4), ("v", 0.4), (3 * _LEFT, 2.4),
-    ("v", 0.4), (2 * _LEFT, 2.0), (2 * _RIGHT, 0.6), (" ", 2.0), ("v", 2.5), ("h", 1.0), ("l", 0.0),
+    (3 * _AHEAD + 2 * _LEFT, 2.6), (2 * _RIGHT, 2.4), ("v", 0.4), (3 * _RIGHT, 2.4), ("v", 0.4), (3 * _LEFT, 1.4),
+    ("v", 0.4), (2 * _LEFT, 1.4), (2 * _RIGHT, 0.4), (" ", 2.0), ("v", 2.5), ("h", 1.0), ("l", 0.0),
 )  # fmt: skip
 # What the terminal itself is coloured, as in the dark theme.
 _GROUND = "#0a0e14"

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from drivers.device import ZERO3, Vector3
+from drivers.device import ZERO3, DeviceError, Vector3
 from drivers.stick import StickSender
 from drivers.virtual import VirtualHandle
 from groundstation.devices.keeper import ABSENT, RETRY_S, DeviceKeeper
@@ -139,3 +139,17 @@ def test_a_driver_that_breaks_while_opening_is_told_of(
     assert bench.keeper.read(bench.now + 0.1) is None
     assert "driver failed" in bench.said[-1][1]
     bench.close()
+
+
+def test_a_device_that_reads_but_takes_no_force_does_not_flood_the_events(
+    bench: Bench, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def refuse(_force: Vector3) -> None:
+        raise DeviceError("On-screen stick: takes no force; unplug it.")
+
+    monkeypatch.setattr(bench.device, "write_force", refuse)
+    for _ in range(300):
+        bench.run(0.01, sending=True)
+        bench.keeper.write((1.0, 0.0, 0.0))
+    assert not bench.keeper.present
+    assert 4 <= len(bench.said) <= 2 * (3.0 / RETRY_S + 1)

@@ -120,6 +120,8 @@ class DeviceKeeper:
             self._device.write_force(force)
         except DeviceError as error:
             self._lose(began, error)
+            # It still reads, and would be there again in the next tick: it is opened anew instead.
+            self._open = False
         self.write_s = max(self.write_s, self._clock() - began)
 
     def close(self) -> None:

@@ -1,7 +1,7 @@
 """What recording costs: the real recorder on a real bus, its share of a core, its size, whether rows are lost.
 
-`ordinary` is a flight's own load; `bar's` is that of the bar, more than 40 numbers a millisecond and 250 poses a
-second; `heavy` is nearly twice as much. How many numbers were recorded is counted in the file. The numbers
+`ordinary` is a flight's own load; `bar's` is that of the bar, 40 numbers a millisecond and 250 poses a
+second; `heavy` is twice as much. How many numbers were recorded is counted in the file. The numbers
 tremble as a hand's and a sensor's do, in their last digits too, which no compression can shorten.
 """
 
@@ -41,7 +41,7 @@ from groundstation.training.mission import find_mission, load_mission
 
 BAR_SHARE, BAR_MB = 3.0, 1.5
 # How often each topic comes, Hz.
-LOADS = {"ordinary": (1000, 50, 50), "bar's": (1000, 500, 250), "heavy": (1000, 1000, 250)}
+LOADS = {"ordinary": (1000, 50, 50), "bar's": (1000, 333, 250), "heavy": (1000, 1000, 250)}
 _WARM_S = 3.0
 
 

@@ -245,14 +245,14 @@ class Servo:
         """Take the settings that the run's file has now; return why not, or ""."""
         if self._engagement.phase is not Phase.DISENGAGED:
             return "the hand is engaged; release it first"
-        before = self._settings
+        before, flown_with = self._settings, (self._run, self._settings, self._surroundings)
         try:
             self._run = read_run(run_file(self._run.run_id))
             self._settings = self._run.settings
             self._surroundings = surroundings_of(self._run)
             self._fit(self._info)
         except (OSError, ValueError) as error:
-            self._settings = before
+            self._run, self._settings, self._surroundings = flown_with
             return f"the settings cannot be flown with: {error}"
         if words := differences(before, self._settings):
             self._bus.event(Severity.INFO, f"Settings: {words}.")

@@ -107,7 +107,7 @@ class Commanding(App[int]):
             Typed(
                 "Engage the REAL vehicle?",
                 f"The first time, type REAL or its system id, {number}. Propellers turn, people may be near.",
-                lambda text: "" if text in {"REAL", number} else f"type REAL or {number}",
+                lambda text: "" if text and text in {"REAL", number} else f"type REAL or {number}",
             ),
             typed,
         )

@@ -17,6 +17,8 @@ from mavsdk import Configuration, Mavsdk, System
 
 from groundstation.bus import Bus
 from groundstation.child import Lifeline, run_child
+from groundstation.conditions import Conditions
+from groundstation.failsafe import BY_FAULT, Fault
 from groundstation.frames import Vector4
 from groundstation.messages import (
     ANSWER_TEXT,
@@ -60,6 +62,7 @@ _DISCOVERY_S = 0.05
 _DEFAULT_TAKEOFF_M = 2.0
 _REASON_S = 1.5
 _LEAVE_S = 0.2
+_SILENT = BY_FAULT[Fault.LINK_SILENT]
 
 # Commands that are the pilot's to follow and to answer.
 _PILOTS = frozenset(
@@ -101,7 +104,7 @@ class Link:
         self._answers = bus.publisher(COMMAND_ANSWER)
         self._status = VehicleStatus(rtt=math.nan, battery=math.nan, voltage=math.nan)
         self._view = VehicleView(notes, time.monotonic)
-        self._stream = OffboardStream(run.settings.safety.setpoint_stale_s)
+        self._stream = OffboardStream(run.settings.safety)
         self._commander: Commander | None = None
         self._round_trip: RoundTrip | None = None
         self._obstacles: ObstacleView | None = None
@@ -302,12 +305,12 @@ class Link:
         self._watch_silence(now)
 
     def _watch_silence(self, now: float) -> None:
-        silence = now - self._pump.heard_t
-        silent = bool(self._pump.heard_t) and silence > self._run.settings.safety.link_warning_s
+        seen = Conditions(silence=now - self._pump.heard_t if self._pump.heard_t else 0.0)
+        silent = _SILENT.holds(seen, self._run.settings.safety)
         if silent != self._silent:
             self._silent = silent
-            words = f"The vehicle is silent for {silence:.1f} s." if silent else "The vehicle is heard again."
-            self._bus.event(Severity.ALARM if silent else Severity.INFO, words)
+            words = _SILENT.say(seen) if silent else "The vehicle is heard again."
+            self._bus.event(_SILENT.severity if silent else Severity.INFO, words)
 
 
 def body(run: Run, bus: Bus, lifeline: Lifeline) -> None:

@@ -220,7 +220,7 @@ TABLE: tuple[Row, ...] = (
     Row(_F.PROCESS_STALLED, _W.SUPERVISOR, "no heartbeat of a process for 1 s", lambda c, _: bool(c.stalled), _A.TELL,
         "does not answer"),
     Row(_F.SCREEN_DEAD, _W.ALL, "the process that started it is gone", lambda c, _: "screen" in c.ended, _A.END,
-        "The screen has gone; this process ends."),
+        "The screen has gone: the vehicle is told to hold, this process ends."),
     Row(_F.DISK_FULL, _W.RECORDER, "the recording cannot be written", lambda c, _: not c.written, _A.TELL,
         "This flight is no longer recorded"),
     Row(_F.DISK_LOW, _W.RECORDER, "less than `recording.warn_gb` (1 GB) left",

@@ -218,6 +218,7 @@ class Storm:
         self._servo = Servo(run, self._bus, keeper, lambda: self.now)
         self._state, self._boot_t = VehicleState(valid=1), 30.0
         self._status = VehicleStatus(connected=1, armed=1, in_air=1, mode=FlightMode.HOLD, rtt=0.03)
+        self._told: list[Vector3] = [(0.0, 0.0, 0.0)]
         self._number, self._severity, self._well = 0, 1.0, True
         self.found = Flown(settings=1)
 
@@ -294,6 +295,8 @@ class Storm:
             self._spoil()
         self._states.send(state)
         self._statuses.send(status)
+        around, up, down = status.speed_limits
+        self._told.append((around, up, down))
         ring = [
             rng.choice((*_EXTREMES, 0.3, 1.0, 5.0)) if wild else rng.uniform(0.5, 12.0) for _ in range(72)
         ]
@@ -327,14 +330,16 @@ class Storm:
 
     def _look(self) -> None:
         """Look at all that left since the last look."""
-        limits = bounded(self._settings.limits, self._known_limits())
+        # What was asked for before the vehicle told others was right by those that it had told until then.
+        limits = [bounded(self._settings.limits, told) for told in self._told]
+        self._told = self._told[-1:]
         for setpoint in self._setpoints.drain():
             self.found.setpoints += 1
             forward, left, up, yaw = setpoint.velocity
             slow = (
-                math.hypot(forward, left) <= limits.horizontal_speed * _SLACK
-                and abs(up) <= limits.vertical_speed * _SLACK
-                and abs(yaw) <= limits.yaw_rate * _SLACK
+                math.hypot(forward, left) <= max(each.horizontal_speed for each in limits) * _SLACK
+                and abs(up) <= max(each.vertical_speed for each in limits) * _SLACK
+                and abs(yaw) <= self._settings.limits.yaw_rate * _SLACK
             )
             if not slow or (not setpoint.active and any(setpoint.velocity)):
                 raise BrokenError(f"setpoint {tuple(setpoint.velocity)}, active {setpoint.active}, {limits}")
@@ -346,11 +351,6 @@ class Storm:
             for numbers in (pilot.p_h, pilot.v_c, pilot.v_safe, pilot.v_ref, pilot.error):
                 if not all(map(math.isfinite, numbers)):
                     raise BrokenError(f"the controller says {tuple(numbers)}")
-
-    def _known_limits(self) -> Vector3:
-        """Return the vehicle's limits as told last: they change only while the world is well or spoilt at once."""
-        around, up, down = self._status.speed_limits
-        return around, up, down
 
 
 def station(number: int, seed: int = 0) -> Flown:

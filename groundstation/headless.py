@@ -227,8 +227,7 @@ class OperatorHand:
         mission = director.mission
         self._director = director
         self.patience_s = mission.criteria.time_limit_s + _GRACE_S
-        route, target = mission.route, mission.target
-        self._operator = Operator(route, target.position, seed=seed) if target else None
+        self._operator = Operator(mission.way[:-1], mission.way[-1], seed=seed) if mission.way else None
         self._settings = mapping
         self._mapping: RateMapping | None = None
         self._workspace = 0.0

@@ -37,7 +37,7 @@ def recorded(folder, run, seconds=SECONDS, director=None):
         if director:
             x, y, z, _ = view.vehicle.position
             director.vehicle(
-                view.t, (x, y, z), in_air=bool(view.status.in_air), armed=bool(view.status.armed)
+                view.t, (x, y, z, 0.0), in_air=bool(view.status.in_air), armed=bool(view.status.armed)
             )
             if view.pilot.phase == Phase.ENGAGED:
                 director.controller(tuple(view.pilot.error[:3]), tuple(view.handle.force))

@@ -46,7 +46,7 @@ def outcome_of(flight: Flight) -> Outcome:
     figures = director.figures
     if director.stage is Stage.WAITING:
         return Outcome(None, "did not take off", figures=figures)
-    if mission.target is None:
+    if not mission.judged:
         words = "landed" if director.stage is Stage.DONE else "in the air at the end of the recording"
         return Outcome(None, words, figures=figures)
     shortcomings = tuple(director.shortcomings())
@@ -59,11 +59,11 @@ def directed(flight: Flight, mission: Mission) -> Director:
     director = Director(mission, World(mission.obstacle), radius_of(mission))
     t, positions = flight.series(schema.POSITION)
     words = words_at(flight, lanes.VEHICLE, t)
-    known = np.isfinite(positions[:, :3].sum(axis=1))
-    for when, (x, y, z), word, good in zip(t.tolist(), positions[:, :3].tolist(), words, known, strict=True):
+    known = np.isfinite(positions.sum(axis=1))
+    for when, (x, y, z, yaw), word, good in zip(t.tolist(), positions.tolist(), words, known, strict=True):
         if good:
             in_air = word == "in air"
-            director.vehicle(when, (x, y, z), in_air=in_air, armed=in_air or word == "armed")
+            director.vehicle(when, (x, y, z, yaw), in_air=in_air, armed=in_air or word == "armed")
     _controlled(flight, director)
     return director
 

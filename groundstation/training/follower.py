@@ -38,8 +38,10 @@ class MissionFollower:
             self.director = self._begin()
         if status and state and state.valid and state.t > self._seen_t:
             self._seen_t = state.t
-            x, y, z, _ = state.position
-            self.director.vehicle(state.t, (x, y, z), in_air=bool(status.in_air), armed=bool(status.armed))
+            x, y, z, yaw = state.position
+            self.director.vehicle(
+                state.t, (x, y, z, yaw), in_air=bool(status.in_air), armed=bool(status.armed)
+            )
         if pilot and pilot.phase == Phase.ENGAGED and pilot.t > self._controlled_t:
             self._controlled_t = pilot.t
             force = tuple(view.handle.force) if view.handle else (0.0, 0.0, 0.0)

@@ -34,6 +34,6 @@ def check(files: Sequence[Path]) -> int:
             code = 2
         else:
             print(
-                f"{path}: right ({mission.name}: {len(mission.obstacle)} obstacles, {len(mission.route)} legs)."
+                f"{path}: right ({mission.name}: {len(mission.obstacle)} obstacles, {len(mission.way)} legs)."
             )
     return code

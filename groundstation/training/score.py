@@ -52,7 +52,7 @@ def score_of(mission: Mission, figures: Figures) -> Score | None:
         mission: What was flown.
         figures: What it came to.
     """
-    if mission.target is None:
+    if not mission.judged:
         return None
     criteria = mission.criteria
     limit, allowed = criteria.time_limit_s, criteria.final_error_m

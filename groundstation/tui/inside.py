@@ -104,10 +104,8 @@ def _standing(frame: Frame, eye: Camera, mission: Mission | None, fence: Fence) 
         guarded = bool(frame.guarded_by) and obstacle.name == frame.guarded_by
         tone = Tone.WARN if guarded else Tone.BESIDE
         scene.append(Lines(wireframe.contours(obstacle, place), tone, far=_DIM_M))
-    way = [(0.0, 0.0, mission.takeoff_altitude_m), *mission.route]
     if mission.target is not None:
         target = np.array(mission.target.position)
-        way.append(mission.target.position)
         ring = wireframe.level_circle(target, max(mission.target.radius, 0.2))
         foot = np.array([target, target * (1.0, 1.0, 0.0)])
         scene.append(
@@ -115,7 +113,7 @@ def _standing(frame: Frame, eye: Camera, mission: Mission | None, fence: Fence) 
         )
         scene.append(Lines(wireframe.path(foot), Tone.ROUTE, 4))
     if mission.route:
-        scene.insert(2, Lines(wireframe.path(np.array(way)), Tone.ROUTE, 5))
+        scene.insert(2, Lines(wireframe.path(np.array(mission.path)), Tone.ROUTE, 5))
     return scene
 
 

@@ -206,9 +206,7 @@ def _route(canvas: Canvas, view: View, mission: Mission) -> None:
     """Draw the way the mission asks for, dotted, with a head on each leg that says which way it goes."""
     if not mission.route:
         return
-    start = (0.0, 0.0, mission.takeoff_altitude_m)
-    way = np.array([start, *mission.route, *([mission.target.position] if mission.target else [])])
-    x, y = view.dots(way)
+    x, y = view.dots(np.array(mission.path))
     canvas.line(x, y, Tone.ROUTE, gap=4)
     for index in range(len(x) - 1):
         _head(canvas, (x[index], y[index]), (x[index + 1], y[index + 1]), 0.5, 3.0)

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import math
 
-import msgspec
-
 from groundstation.evaluation.flight import VirtualFlight
 from groundstation.training.events import (
     BatteryLeft,
@@ -18,7 +16,6 @@ from groundstation.training.events import (
     Loss,
     WindChange,
 )
-from sim.channel import Conditions
 
 
 class Happenings:
@@ -70,5 +67,4 @@ class Happenings:
     def _change(self, **fields: float) -> None:
         """Go on with another channel, both ways, as far as it is named."""
         for way in (self._flight.link.up, self._flight.link.down):
-            conditions: Conditions = msgspec.structs.replace(way.conditions, **fields)
-            way.change(conditions)
+            way.change(way.conditions._replace(**fields))

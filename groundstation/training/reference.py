@@ -40,7 +40,7 @@ class Reference(Struct, frozen=True):
 
 
 def digest_of(mission: Mission) -> str:
-    """Return a digest of all that a flight of the mission depends on; its texts and its place in the school do not."""
+    """Return a digest of all that a flight of the mission depends on: not of texts, nor of its place in the school."""
     plain = msgspec.structs.replace(
         mission,
         name="-",

@@ -12,6 +12,10 @@ from groundstation.training.mission import MISSIONS_FOLDER, SUFFIX, MissionError
 
 def run(asked: argparse.Namespace) -> int:
     """Do what was asked and return the exit code."""
+    if asked.act == "measure":
+        from groundstation.operators.measure import run as measure
+
+        return measure(asked)
     return show() if asked.act == "list" else check(asked.files)
 
 

@@ -79,6 +79,11 @@ def length(mission: Mission) -> float:
     return sum(math.dist(*leg) for leg in pairwise(_whole_way(mission)))
 
 
+def holds(mission: Mission) -> list[float]:
+    """Return how long the vehicle must stay at each point and at the target, s."""
+    return [each.hold_s for each in (*mission.waypoints, *([mission.target] if mission.target else []))]
+
+
 def _whole_way(mission: Mission) -> list[Point]:
     """Return the points from the pad through the path and straight down."""
     x, y, _ = mission.path[-1]
@@ -128,8 +133,9 @@ def _out_of_bounds(mission: Mission, radius: float) -> Iterator[str]:
 
 def _criteria(mission: Mission, airframe: Airframe) -> Iterator[str]:
     limit, target = mission.criteria.time_limit_s, mission.target
-    stays = sum(point.hold_s for point in mission.waypoints) + (target.hold_s if target else 0.0)
-    quickest = stays + length(mission) / min(airframe.horizontal_speed, Settings().limits.horizontal_speed)
+    quickest = sum(holds(mission)) + length(mission) / min(
+        airframe.horizontal_speed, Settings().limits.horizontal_speed
+    )
     if mission.judged and quickest > limit:
         yield f"it takes {quickest:.0f} s at full speed, and criteria.time_limit_s is {limit:g} s: give more."
     if target and mission.criteria.final_error_m > target.radius:
@@ -155,12 +161,9 @@ def _flies_itself(mission: Mission) -> bool:
     """Say whether a vehicle that takes off, stays as long as it is asked to, and lands meets the criteria."""
     director = Director(mission, World(), 0.0)
     x, y, z = mission.path[0]
-    stays = [point.hold_s for point in mission.waypoints] + (
-        [mission.target.hold_s] if mission.target else []
-    )
     yaw = math.radians(mission.vehicle.yaw_deg)
     # Twice: once to come to the point, once to have stayed there.
-    for t in [0.0, *np.cumsum(np.repeat(stays, 2) + 0.1).tolist()]:
+    for t in [0.0, *np.cumsum(np.repeat(holds(mission), 2) + 0.1).tolist()]:
         director.vehicle(t, (x, y, z, yaw), in_air=True, armed=True)
     director.vehicle(director.figures.duration, (x, y, 0.0, yaw), in_air=False, armed=False)
     return not director.shortcomings()

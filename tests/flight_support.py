@@ -130,8 +130,10 @@ def set_parameters(tap, **values: float) -> None:
     """Set the simulated vehicle's own parameters, from its side of the wire."""
     other = another_station()
     for name, value in values.items():
-        message = other.param_set_encode(1, 1, name.encode(), value, mavlink.MAV_PARAM_TYPE_REAL32)
-        tap.inject(bytes(message.pack(other)))
+        kind = mavlink.MAV_PARAM_TYPE_INT32 if isinstance(value, int) else mavlink.MAV_PARAM_TYPE_REAL32
+        # PX4 has the bytes of a whole number where MAVLink has a float.
+        sent = struct.unpack("<f", struct.pack("<i", value))[0] if isinstance(value, int) else value
+        tap.inject(bytes(other.param_set_encode(1, 1, name.encode(), sent, kind).pack(other)))
 
 
 class Stage:
@@ -140,25 +142,35 @@ class Stage:
     Args:
         folder: Where hand, mission and recordings are.
         options: More of the program's own.
+        device: What the hand holds, as for `--device`, with its socket to follow.
+        push: How far the hand leads the vehicle, m.
         environment: Of the program and its processes.
 
     Attributes:
+        url: What the program connects to: the tap, where nothing is between them.
         tap: The wire between program and vehicle.
         program: The program as it runs now.
         hand: The hand as it holds now.
     """
 
-    def __init__(self, folder: Path, *options: str, environment: dict[str, str] | None = None) -> None:
-        self._options, self._environment = options, environment
+    def __init__(
+        self,
+        folder: Path,
+        *options: str,
+        device: str = "virtual:",
+        push: float = 0.06,
+        environment: dict[str, str] | None = None,
+    ) -> None:
+        self._options, self._device, self._push, self._environment = options, device, push, environment
         self.hand_socket = str(folder / "hand.sock")
         self.mission = folder / "long.toml"
         self.mission.write_text(LONG)
         self.logs = folder / "logs"
         self.tap = Tap()
+        self.url = f"udpout://127.0.0.1:{self.tap.program_port}"
         self._vehicle = contextlib.ExitStack()
         self.program: Program | None = None
         self.hand: Hand | None = None
-        self._push = 0.06
         self.start_vehicle()
 
     def start_vehicle(self) -> None:
@@ -172,7 +184,7 @@ class Stage:
         self.end_program()
         self.hand = Hand(self.hand_socket)
         self.program = Program(
-            "--connect", f"udpout://127.0.0.1:{self.tap.program_port}", "--device", f"virtual:{self.hand_socket}",
+            "--connect", self.url, "--device", self._device + self.hand_socket,
             "--mission", str(self.mission), "--logs", str(self.logs), *self._options,
             columns=80, rows=24, environment=self._environment,
         )  # fmt: skip
@@ -218,6 +230,7 @@ class Stage:
             40,
             "heard",
         )
+        self.see(lambda view: view.device and view.device.homed, 20, "the device is homed")
         if program.console.snapshot().status.in_air:
             # Whatever it was doing by itself, such as landing, as far as it has not got there.
             since = time.monotonic()

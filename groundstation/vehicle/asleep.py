@@ -1,7 +1,7 @@
 """Whether this computer slept: the monotonic clock stands still meanwhile, so that what is hours old looks fresh.
 
-Linux counts the time asleep in CLOCK_BOOTTIME and leaves it out of CLOCK_MONOTONIC (clock_gettime(2)); their difference
-grows by it and by nothing else.
+Linux counts the time asleep in CLOCK_BOOTTIME and leaves it out of CLOCK_MONOTONIC (clock_gettime(2)); their
+difference grows by it and by nothing else.
 """
 
 from __future__ import annotations

@@ -318,7 +318,7 @@ def body(run: Run, bus: Bus, lifeline: Lifeline) -> None:
         lambda level, text, _file, _line: _note_log(notes, int(level), text) if connected.is_set() else True
     )
     try:
-        transport = open_transport(parse_url(run.url))
+        transport = open_transport(parse_url(run.url), lambda severity, words: notes.put((severity, words)))
     except (UrlError, TransportError) as error:
         raise SystemExit(str(error)) from error
     sleep = Sleep()

@@ -40,6 +40,7 @@ from groundstation.messages import (
     fit,
 )
 from groundstation.run import Run
+from groundstation.vehicle.asleep import Sleep
 from groundstation.vehicle.commander import STEERING, Answer, Commander
 from groundstation.vehicle.gate import Gate
 from groundstation.vehicle.identity import Identity
@@ -89,11 +90,14 @@ class Link:
         pump: Moves the bytes.
         gate: Keeps stale setpoints back.
         notes: What other threads want told as events.
+        sleep: Whether the computer slept; the gate goes by its clock.
     """
 
-    def __init__(self, run: Run, bus: Bus, mav: Mavsdk, pump: Pump, gate: Gate, *, notes: Notes) -> None:
+    def __init__(
+        self, run: Run, bus: Bus, mav: Mavsdk, pump: Pump, gate: Gate, *, notes: Notes, sleep: Sleep
+    ) -> None:
         self._run, self._bus, self._mav, self._pump, self._gate = run, bus, mav, pump, gate
-        self._notes = notes
+        self._notes, self._sleep = notes, sleep
         self._setpoints = bus.subscriber(SETPOINT, depth=1)
         self._waker = bus.waker(SETPOINT)
         self._commands = bus.subscriber(COMMAND)
@@ -119,6 +123,7 @@ class Link:
     def turn(self) -> None:
         """Pass records once around; never waits."""
         now = time.monotonic()
+        self._wake()
         if self._commander is None:
             self._discover(now)
         else:
@@ -153,6 +158,15 @@ class Link:
     def close(self) -> bool:
         """End what waits for the vehicle; say whether MAVSDK may be taken away now."""
         return self._desk is None or self._desk.close()
+
+    def _wake(self) -> None:
+        """After a sleep nothing that was being flown goes on, however young the monotonic clock says it is."""
+        if slept := self._sleep.news():
+            words = f"this computer slept for {slept:.1f} s"
+            act, why = self._stream.interrupted(f"{words}; the vehicle holds")
+            self._do(act, why)
+            if not why:
+                self._bus.event(Severity.WARNING, f"{words[0].upper()}{words[1:]}.")
 
     def _discover(self, now: float) -> None:
         if now < self._next_discovery:
@@ -194,7 +208,7 @@ class Link:
             self._commander.start_offboard()
 
     def _give(self, velocity: Vector4, made_t: float) -> None:
-        if self._commander and self._gate.authorise(velocity, made_t):
+        if self._commander and self._gate.authorise(velocity, made_t + self._sleep.seconds()):
             self._commander.fly(velocity)
 
     def _do(self, act: Act, why: str) -> None:
@@ -323,12 +337,13 @@ def body(run: Run, bus: Bus, lifeline: Lifeline) -> None:
         lambda level, text, _file, _line: _note_log(notes, int(level), text) if connected.is_set() else True
     )
     try:
-        transport = open_transport(parse_url(run.url))
+        transport = open_transport(parse_url(run.url), lambda severity, words: notes.put((severity, words)))
     except (UrlError, TransportError) as error:
         raise SystemExit(str(error)) from error
+    sleep = Sleep()
     gate = Gate(
         run.settings.safety.setpoint_stale_s,
-        time.monotonic,
+        sleep.clock,
         lambda words: notes.put((Severity.WARNING, words)),
     )
     tlog = _open_tlog(run, notes)
@@ -336,7 +351,7 @@ def body(run: Run, bus: Bus, lifeline: Lifeline) -> None:
     mav = Mavsdk(Configuration.create_manual(_SYSTEM_ID, _COMPONENT_ID, always_send_heartbeats=True))
     pump.start(mav)
     connected.set()
-    link = Link(run, bus, mav, pump, gate, notes=notes)
+    link = Link(run, bus, mav, pump, gate, notes=notes, sleep=sleep)
     try:
         while lifeline.holds():
             link.turn()

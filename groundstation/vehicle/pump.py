@@ -22,23 +22,37 @@ if TYPE_CHECKING:
     from mavsdk import Mavsdk
 
 _WINDOW_S = 5.0
+_HALF = 128
 
 
 class Losses:
-    """Counts the vehicle's lost frames by the gaps in its sequence numbers over the last seconds."""
+    """Counts the vehicle's lost frames by the gaps in its sequence numbers over the last seconds.
+
+    What is overtaken on its way is lost only until it comes; what comes twice counts once.
+    """
 
     def __init__(self) -> None:
         self._next: dict[tuple[int, int], int] = {}
+        self._missing: dict[tuple[int, int], set[int]] = {}
         self._marks: deque[tuple[float, int]] = deque()
         self._lost = 0
 
     def count(self, now: float, system: int, component: int, sequence: int) -> None:
         """Take note of a frame (sequence numbers run modulo 256)."""
         source = (system, component)
-        lost = (sequence - self._next.get(source, sequence)) % 256
-        # A jump of more than half the range is a repeated or late frame, not 200 lost ones.
-        lost = 0 if lost > 128 else lost
-        self._next[source] = (sequence + 1) % 256
+        next_ = self._next.setdefault(source, sequence)
+        missing = self._missing.setdefault(source, set())
+        lost = (sequence - next_) % 256
+        if lost <= _HALF:
+            # Half a round on, a number is the next round's.
+            missing.difference_update((sequence + _HALF + each) % 256 for each in range(lost + 1))
+            missing.update((next_ + each) % 256 for each in range(lost))
+            self._next[source] = (sequence + 1) % 256
+        elif sequence in missing:
+            missing.remove(sequence)
+            lost = -1
+        else:
+            return
         self._marks.append((now, lost))
         self._lost += lost
 
@@ -46,8 +60,9 @@ class Losses:
         """Return lost / (lost + received) over the window, 0 to 1."""
         while self._marks and self._marks[0][0] < now - _WINDOW_S:
             self._lost -= self._marks.popleft()[1]
-        received = len(self._marks)
-        return self._lost / (received + self._lost) if received else 0.0
+        # One that came late may have been lost before the window.
+        received, lost = len(self._marks), max(0, self._lost)
+        return lost / (received + lost) if received else 0.0
 
 
 class Pump:

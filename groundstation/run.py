@@ -33,6 +33,7 @@ class Run(Struct, frozen=True):
         pilot: Who flies, as people know them.
         seed: Of all that is random in the simulation.
         config: The settings file, or "" where they are the defaults.
+        signing_key: The file with the key for MAVLink signing, or "". The key itself is nowhere but there.
     """
 
     run_id: str
@@ -50,6 +51,7 @@ class Run(Struct, frozen=True):
     pilot: str = ""
     seed: int = 0
     config: str = ""
+    signing_key: str = ""
 
     @property
     def hand(self) -> Path | None:

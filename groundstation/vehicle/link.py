@@ -11,12 +11,14 @@ import queue
 import threading
 import time
 from collections import deque
+from pathlib import Path
 
 import mavsdk
 from mavsdk import Configuration, Mavsdk, System
 
 from groundstation.bus import Bus
 from groundstation.child import Lifeline, run_child
+from groundstation.errors import InputError
 from groundstation.frames import Vector4
 from groundstation.messages import (
     ANSWER_TEXT,
@@ -45,9 +47,10 @@ from groundstation.vehicle.offboard import Act, OffboardStream, Seen
 from groundstation.vehicle.parameter_desk import PARAMETER_COMMANDS, ParameterDesk
 from groundstation.vehicle.pump import Pump
 from groundstation.vehicle.round_trip import RoundTrip
+from groundstation.vehicle.signing import Refusals, Signing, read_key
 from groundstation.vehicle.telemetry import Notes, VehicleView
 from groundstation.vehicle.tlog import TlogWriter
-from groundstation.vehicle.transport import TransportError, UrlError, open_transport, parse_url
+from groundstation.vehicle.transport import TransportError, open_transport, parse_url
 
 ROLE = "link"
 # MAV_COMP_ID_MISSIONPLANNER: the ground station's usual component, with the usual GCS system id.
@@ -112,6 +115,7 @@ class Link:
         self._next_status = 0.0
         self._next_discovery = 0.0
         self._silent = False
+        self._refusals = Refusals()
 
     def turn(self) -> None:
         """Pass records once around; never waits."""
@@ -298,6 +302,8 @@ class Link:
         status.unsafe = fit(self._desk.unsafe if self._desk else "", REASON_TEXT)
         self._statuses.send(status)
         self._watch_silence(now)
+        if words := self._refusals.news(now, self._pump.refused, heard=bool(self._pump.heard_t)):
+            self._bus.event(Severity.WARNING, words)
 
     def _watch_silence(self, now: float) -> None:
         silence = now - self._pump.heard_t
@@ -318,13 +324,14 @@ def body(run: Run, bus: Bus, lifeline: Lifeline) -> None:
         lambda level, text, _file, _line: _note_log(notes, int(level), text) if connected.is_set() else True
     )
     try:
+        signing = Signing(read_key(Path(run.signing_key)), time.time) if run.signing_key else None
         transport = open_transport(parse_url(run.url), lambda severity, words: notes.put((severity, words)))
-    except (UrlError, TransportError) as error:
+    except (InputError, TransportError) as error:
         raise SystemExit(str(error)) from error
     sleep = Sleep()
     gate = Gate(run.settings.safety.setpoint_stale_s, sleep.clock)
     tlog = _open_tlog(run, notes)
-    pump = Pump(transport, gate, tlog, time.monotonic)
+    pump = Pump(transport, gate, tlog, time.monotonic, signing)
     mav = Mavsdk(Configuration.create_manual(_SYSTEM_ID, _COMPONENT_ID, always_send_heartbeats=True))
     pump.start(mav)
     connected.set()

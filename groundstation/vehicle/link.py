@@ -11,6 +11,7 @@ import queue
 import threading
 import time
 from collections import deque
+from pathlib import Path
 
 import mavsdk
 from mavsdk import Configuration, Mavsdk, System
@@ -18,6 +19,7 @@ from mavsdk import Configuration, Mavsdk, System
 from groundstation.bus import Bus
 from groundstation.child import Lifeline, run_child
 from groundstation.conditions import Conditions
+from groundstation.errors import InputError
 from groundstation.failsafe import BY_FAULT, Fault
 from groundstation.frames import Vector4
 from groundstation.messages import (
@@ -50,9 +52,10 @@ from groundstation.vehicle.parameter_desk import PARAMETER_COMMANDS, ParameterDe
 from groundstation.vehicle.profiles import profile_of
 from groundstation.vehicle.pump import Pump
 from groundstation.vehicle.round_trip import RoundTrip
+from groundstation.vehicle.signing import Refusals, Signing, read_key
 from groundstation.vehicle.telemetry import Notes, VehicleView
 from groundstation.vehicle.tlog import TlogWriter
-from groundstation.vehicle.transport import TransportError, UrlError, open_transport, parse_url
+from groundstation.vehicle.transport import TransportError, open_transport, parse_url
 
 ROLE = "link"
 # MAV_COMP_ID_MISSIONPLANNER: the ground station's usual component, with the usual GCS system id.
@@ -119,6 +122,7 @@ class Link:
         self._next_status = 0.0
         self._next_discovery = 0.0
         self._silent = False
+        self._refusals = Refusals()
 
     def turn(self) -> None:
         """Pass records once around; never waits."""
@@ -317,6 +321,8 @@ class Link:
             status.firmware = fit(self._identity.firmware, FIRMWARE_TEXT)
         self._statuses.send(status)
         self._watch_silence(now)
+        if words := self._refusals.news(now, self._pump.refused, heard=bool(self._pump.heard_t)):
+            self._bus.event(Severity.WARNING, words)
 
     def _watch_silence(self, now: float) -> None:
         seen = Conditions(silence=now - self._pump.heard_t if self._pump.heard_t else 0.0)
@@ -337,8 +343,9 @@ def body(run: Run, bus: Bus, lifeline: Lifeline) -> None:
         lambda level, text, _file, _line: _note_log(notes, int(level), text) if connected.is_set() else True
     )
     try:
+        signing = Signing(read_key(Path(run.signing_key)), time.time) if run.signing_key else None
         transport = open_transport(parse_url(run.url), lambda severity, words: notes.put((severity, words)))
-    except (UrlError, TransportError) as error:
+    except (InputError, TransportError) as error:
         raise SystemExit(str(error)) from error
     sleep = Sleep()
     gate = Gate(
@@ -347,7 +354,7 @@ def body(run: Run, bus: Bus, lifeline: Lifeline) -> None:
         lambda words: notes.put((Severity.WARNING, words)),
     )
     tlog = _open_tlog(run, notes)
-    pump = Pump(transport, gate, tlog, time.monotonic)
+    pump = Pump(transport, gate, tlog, time.monotonic, signing)
     mav = Mavsdk(Configuration.create_manual(_SYSTEM_ID, _COMPONENT_ID, always_send_heartbeats=True))
     pump.start(mav)
     connected.set()

@@ -23,6 +23,7 @@ from groundstation.messages import CommandKind, FlightMode, Severity
 from groundstation.run import Run
 from groundstation.training.director import Director
 from groundstation.training.follower import MissionFollower
+from groundstation.training.guide import guide_of
 from groundstation.tui.acts import ACTS, URGENT, Act, coupled, in_air
 from groundstation.tui.alarms import Alarms
 from groundstation.tui.alerts import conditions
@@ -185,6 +186,7 @@ class FlightApp(Commanding):
         return self._follower.director if self._follower is not None else None
 
     def _frame(self, snapshot: Snapshot) -> Frame:
+        director = self.director
         return Frame(
             snapshot=snapshot,
             run=self._flight_run,
@@ -196,7 +198,8 @@ class FlightApp(Commanding):
             notes=tuple(self._answers.notes),
             track=self._track,
             history=self._history,
-            figures=self._follower.director.figures if self._follower is not None else None,
+            figures=director.figures if director is not None else None,
+            guide=guide_of(director, snapshot.t) if director is not None else None,
             alarms=self._alarms,
             paint_hz=self._pace.rate,
         )

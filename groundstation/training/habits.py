@@ -16,7 +16,7 @@ _FELT_N, _MEANT = 0.5, 0.4
 _STANDS = 0.15
 # Time to contact is too short under this, s, at more than so many m/s (Lee 1976, A theory of visual control of
 # braking based on information about time-to-collision: people brake by the time that is left).
-_CONTACT_S, _FAST = 1.2, 0.6
+_CONTACT_S, _FAST = 0.7, 0.6
 # The ends of the travel, as a share; and of a stick that rests.
 _EDGE, _FULL, _RESTING = 0.95, 0.97, 0.12
 # Room or time ahead that full stick leaves too little of, m and s.

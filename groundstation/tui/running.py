@@ -24,6 +24,7 @@ def run_screen(
     console: Reader,
     supervisor: Supervisor,
     stick: StickSender | None,
+    *,
     follower: MissionFollower | None = None,
     coach: LiveCoach | None = None,
 ) -> int:
@@ -52,7 +53,7 @@ def fly_on_screen(run: Run, bus: Bus, supervisor: Supervisor) -> int:
     try:
         follower = MissionFollower(run.mission, bus) if run.mission else None
         coach = LiveCoach(run, lambda words: bus.event(Severity.INFO, words))
-        return run_screen(run, Console(bus, "screen"), supervisor, stick, follower, coach)
+        return run_screen(run, Console(bus, "screen"), supervisor, stick, follower=follower, coach=coach)
     finally:
         if stick is not None:
             stick.close()

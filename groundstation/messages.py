@@ -23,6 +23,7 @@ EVENT_TEXT = 240
 ANSWER_TEXT = 200
 REASON_TEXT = 160
 NAME_TEXT = 49
+FIRMWARE_TEXT = 24
 PARAMETER_TEXT = 17
 # Sectors of the ring in `Ranges`, as many as MAVLink's OBSTACLE_DISTANCE has room for.
 RING_SECTORS = 72
@@ -71,6 +72,14 @@ class Stream(IntEnum):
     STARTING = 1
     FLYING = 2
     ENDED = 3
+
+
+class Autopilot(IntEnum):
+    """What flies the vehicle, as its heartbeat says."""
+
+    UNKNOWN = 0
+    PX4 = 1
+    ARDUPILOT = 2
 
 
 class CommandKind(IntEnum):
@@ -412,10 +421,14 @@ class VehicleStatus(Record):
         heard_t: When the last frame of the vehicle came, s; 0 before the first.
         loss: Share of the vehicle's frames lost in the last seconds, 0 to 1.
         rtt: Round trip by TIMESYNC, s; NaN before the first answer.
+        speed_limits: Largest speeds that the vehicle allows, m/s: around, up, down; 0 where not known.
         sent: Setpoint frames that left.
-        dropped: Setpoint frames the gate kept back.
+        dropped: Frames the gate kept back: stale setpoints, and what is not on its list.
         streaming: State of the setpoint stream, a `Stream`; FLYING only once the vehicle has confirmed offboard
             for this very stream.
+        autopilot: An `Autopilot`.
+        component: Of the autopilot in MAVLink; 0 until it has told its version.
+        firmware: That version, or "".
         unsafe: Why its own failsafes keep the hand from being coupled, or "".
     """
 
@@ -424,6 +437,7 @@ class VehicleStatus(Record):
     rtt: float
     battery: float
     voltage: float
+    speed_limits: ctypes.Array[_F64]
     sent: int
     dropped: int
     health: int
@@ -433,6 +447,9 @@ class VehicleStatus(Record):
     in_air: int
     mode: int
     streaming: int
+    autopilot: int
+    component: int
+    firmware: bytes
     unsafe: bytes
     _fields_ = (
         ("t", _F64),
@@ -441,6 +458,7 @@ class VehicleStatus(Record):
         ("rtt", _F64),
         ("battery", _F64),
         ("voltage", _F64),
+        ("speed_limits", _F64 * 3),
         ("sent", _U64),
         ("dropped", _U64),
         ("health", _U32),
@@ -450,6 +468,9 @@ class VehicleStatus(Record):
         ("in_air", _U8),
         ("mode", _U8),
         ("streaming", _U8),
+        ("autopilot", _U8),
+        ("component", _U8),
+        ("firmware", ctypes.c_char * FIRMWARE_TEXT),
         ("unsafe", ctypes.c_char * REASON_TEXT),
     )
 

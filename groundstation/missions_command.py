@@ -11,6 +11,7 @@ _ACTS = {
     "list": "groundstation.training.listing:show_all",
     "show": "groundstation.tui.briefing:run",
     "check": "groundstation.training.listing:check",
+    "measure": "groundstation.operators.measure:run",
     "new": "groundstation.training.making:run",
 }
 

@@ -10,6 +10,8 @@ from __future__ import annotations
 import gc
 import time
 
+import msgspec
+
 from drivers.device import ZERO3, DeviceError, DeviceInfo, HandleState
 from groundstation.bus import Bus
 from groundstation.child import Lifeline, run_child
@@ -39,6 +41,7 @@ from groundstation.pilot.engagement import (
 from groundstation.pilot.guest import load_controller
 from groundstation.pilot.inputs import Inputs
 from groundstation.pilot.lateness import Lateness
+from groundstation.pilot.limits import bounded
 from groundstation.pilot.link_state import link_fault
 from groundstation.pilot.outbox import MadeFrom, Outbox, Tick
 from groundstation.pilot.pilot import Memory, Outputs, Pilot
@@ -91,6 +94,7 @@ class Servo:
         self._keeper = keeper
         self._feed = VehicleFeed(bus, self._surroundings.radius)
         self._ahead = ZERO4
+        self._speed_limits = self._feed.speed_limits
         self._commands = bus.subscriber(COMMAND)
         self._outbox = Outbox(bus)
         self._setpoint_due = Every(1.0 / run.settings.rates.setpoint)
@@ -115,6 +119,8 @@ class Servo:
         if self._keeper.info is not self._info:
             self._fit(self._keeper.info)
         self._feed.update(now, self._ahead)
+        if self._feed.speed_limits != self._speed_limits:
+            self._take_speed_limits()
         hand, conditions = self._look(now, handle)
         for kind in commanded(self._chosen, hand.buttons, self._settings.buttons):
             self._outbox.command(now, kind)
@@ -163,11 +169,31 @@ class Servo:
         """Fit the controller to a device."""
         self._info = info
         self.rate = info.rate
-        self._pilot = Pilot(self._settings, info, self._surroundings, self._controller)
+        self._pilot = self._made()
         self._memory = Memory()
         self._homed = False
         self._fitted += 1
         self._tell_gains()
+
+    def _made(self) -> Pilot:
+        """Return the controller for settings, device and vehicle: no faster than that allows itself."""
+        limits = bounded(self._settings.limits, self._speed_limits)
+        settings = msgspec.structs.replace(self._settings, limits=limits)
+        return Pilot(settings, self._info, self._surroundings, self._controller)
+
+    def _take_speed_limits(self) -> None:
+        """Fit the controller to the speeds that the vehicle allows; a hand that is coupled is let go first."""
+        before = bounded(self._settings.limits, self._speed_limits)
+        self._speed_limits = self._feed.speed_limits
+        now = bounded(self._settings.limits, self._speed_limits)
+        if now == before:
+            return
+        self._engagement, ending = disengage(self._engagement, "the vehicle's speed limits have changed")
+        if ending:
+            self._end(ending._replace(severity=Severity.ALARM))
+        self._pilot = self._made()
+        words = f"{now.horizontal_speed:.3g} m/s around, {now.vertical_speed:.3g} m/s up and down"
+        self._bus.event(Severity.INFO, f"Speed limits with this vehicle: {words}.")
 
     def _tell_gains(self) -> None:
         """Say where the device cannot render the gains that are set."""

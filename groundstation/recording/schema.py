@@ -15,10 +15,11 @@ from groundstation.recording.entities import SCENE
 from groundstation.recording.lanes import LANES
 
 APPLICATION = "groundstation"
+# 5: what the flight is held against, and where it lost points.
 # 4: all that a tick of the servo was made from, to the last bit.
 # 3: every attitude and body rate that the vehicle tells, and commands and answers as numbers.
-# 2: what stands around equations (4) and (5), and the vehicle's own distance sensors. A reader of 4 reads 1 to 3.
-VERSION = 4
+# 2: what stands around equations (4) and (5), and the vehicle's own distance sensors. A reader of 5 reads 1 to 4.
+VERSION = 5
 TIMELINE = "flight_time"
 
 # Properties of the whole flight.
@@ -200,6 +201,13 @@ ANSWERED = Quantity(
     "as given",
     "Answers: of which command, its `CommandKind`, and 1 where it was done, 0 where refused",
 )
+SPEED_LIMITS = Quantity(
+    "/vehicle/speed_limits",
+    ("around", "up", "down"),
+    "m/s",
+    "on change",
+    "Largest speeds that the vehicle allows; 0 is not known",
+)
 SYSTEM_ID = Quantity(
     "/vehicle/system_id", ("system id",), "count", "on change", "The vehicle's own in MAVLink"
 )
@@ -299,7 +307,7 @@ QUANTITIES: tuple[Quantity, ...] = (
     PREDICTED, PREDICTED_VELOCITY, STOP, PUSH,
     *REFERENCES, *EXECUTED,
     POSITION, VELOCITY, UNTRUSTED, ATTITUDE, RAW_ATTITUDE, RAW_RATES, SYSTEM_ID, BOOT_TIME,
-    BATTERY, VOLTAGE, HEALTH_BITS, STATUS,
+    BATTERY, VOLTAGE, HEALTH_BITS, STATUS, SPEED_LIMITS,
     RING, RANGES, RANGE_LIMIT,
     STATE_AGE, HANDLE_AGE, ROUND_TRIP, RECKONED, SILENCE,
     LOSS, GATE,

@@ -184,9 +184,9 @@ class Director:
         return asked, 0.0 if since is None else self._took_off_t + self.figures.duration - since
 
     @property
-    def gates_left(self) -> tuple[str, ...]:
-        """Names of the gates not flown through yet, in the mission's order."""
-        return tuple(gate.name for gate in self._gates)
+    def missed(self) -> tuple[Gate, ...]:
+        """The gates not flown through yet."""
+        return tuple(self._gates)
 
     def elapsed(self, t: float) -> float:
         """Return the time since take-off, s; 0 before it."""

@@ -65,7 +65,7 @@ class Way(NamedTuple):
 def guide_of(director: Director, t: float) -> Guide:
     """Return how far a mission is at `t`, s."""
     hold_s, held_s = director.stay
-    left, mission = director.gates_left, director.mission
+    left, mission = [gate.name for gate in director.missed], director.mission
     gates = {each.name for each in mission.obstacle if isinstance(each, Gate)}
     return Guide(
         goal=None if director.stage is Stage.DONE else director.goal,

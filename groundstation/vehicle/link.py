@@ -23,6 +23,7 @@ from groundstation.messages import (
     ATTITUDE,
     COMMAND,
     COMMAND_ANSWER,
+    FIRMWARE_TEXT,
     OBSTACLES,
     REASON_TEXT,
     SETPOINT,
@@ -39,9 +40,11 @@ from groundstation.messages import (
 from groundstation.run import Run
 from groundstation.vehicle.commander import STEERING, Answer, Commander
 from groundstation.vehicle.gate import Gate
+from groundstation.vehicle.identity import Identity
 from groundstation.vehicle.obstacle_view import ObstacleView
 from groundstation.vehicle.offboard import Act, OffboardStream, Seen
 from groundstation.vehicle.parameter_desk import PARAMETER_COMMANDS, ParameterDesk
+from groundstation.vehicle.profiles import profile_of
 from groundstation.vehicle.pump import Pump
 from groundstation.vehicle.round_trip import RoundTrip
 from groundstation.vehicle.telemetry import Notes, VehicleView
@@ -103,6 +106,7 @@ class Link:
         self._round_trip: RoundTrip | None = None
         self._obstacles: ObstacleView | None = None
         self._desk: ParameterDesk | None = None
+        self._identity: Identity | None = None
         self._given = 0
         self._denials: deque[tuple[float, str]] = deque(maxlen=4)
         self._next_status = 0.0
@@ -119,6 +123,8 @@ class Link:
             self._collect_answers(now)
         if self._round_trip:
             self._round_trip.turn()
+        if self._identity:
+            self._identity.turn()
         for command in self._commands.drain():
             self._obey(command, now)
         self._pass_on_sights()
@@ -156,13 +162,18 @@ class Link:
     def _attach(self, system: System) -> None:
         mission = self._run.mission
         altitude = mission.takeoff_altitude_m if mission else _DEFAULT_TAKEOFF_M
-        self._commander = Commander(system, altitude)
+        profile = profile_of(system.autopilot_type())
+        self._gate.address(system.get_system_id(), profile.modes if profile else frozenset())
+        self._commander = Commander(system, self._gate, altitude)
         self._round_trip = RoundTrip(system, time.monotonic)
         self._obstacles = ObstacleView(system, self._view.yaw, self._notes, time.monotonic)
-        self._desk = ParameterDesk(self._bus, system)
+        self._desk = ParameterDesk(self._bus, system, self._gate, profile)
+        self._identity = Identity(system, time.monotonic)
         self._view.attach(system, self._run.settings.rates.telemetry)
-        self._status.system_id = system.get_system_id()
-        self._bus.event(Severity.INFO, f"Vehicle {self._status.system_id} found on {self._run.url}.")
+        self._status.system_id, self._status.autopilot = system.get_system_id(), system.autopilot_type()
+        kind = profile.label if profile else "unknown autopilot"
+        words = f"Vehicle {self._status.system_id}, {kind}, found on {self._run.url}."
+        self._bus.event(Severity.INFO if profile and profile.tested else Severity.WARNING, words)
 
     def _fly(self, now: float) -> None:
         """Stream the newest setpoint, or end the stream."""
@@ -281,7 +292,12 @@ class Link:
         status.connected = int(view.connected())
         status.armed, status.in_air = int(view.armed), int(view.in_air)
         status.mode, status.streaming = int(view.mode), int(self._stream.state)
-        status.unsafe = fit(self._desk.unsafe if self._desk else "", REASON_TEXT)
+        if self._desk:
+            status.unsafe = fit(self._desk.unsafe, REASON_TEXT)
+            status.speed_limits[:] = self._desk.speed_limits
+        if self._identity:
+            status.component = self._identity.component
+            status.firmware = fit(self._identity.firmware, FIRMWARE_TEXT)
         self._statuses.send(status)
         self._watch_silence(now)
 
@@ -307,7 +323,11 @@ def body(run: Run, bus: Bus, lifeline: Lifeline) -> None:
         transport = open_transport(parse_url(run.url))
     except (UrlError, TransportError) as error:
         raise SystemExit(str(error)) from error
-    gate = Gate(run.settings.safety.setpoint_stale_s, time.monotonic)
+    gate = Gate(
+        run.settings.safety.setpoint_stale_s,
+        time.monotonic,
+        lambda words: notes.put((Severity.WARNING, words)),
+    )
     tlog = _open_tlog(run, notes)
     pump = Pump(transport, gate, tlog, time.monotonic)
     mav = Mavsdk(Configuration.create_manual(_SYSTEM_ID, _COMPONENT_ID, always_send_heartbeats=True))

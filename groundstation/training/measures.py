@@ -12,6 +12,7 @@ class Measures(Struct, frozen=True):
 
     Attributes:
         time_s: From take-off to landing, s.
+        reached: Share of the mission's points that were reached, 0 to 1.
         rms_error_m: Root mean square of |p̃| on x, y, z while coupled, m.
         path_error_m: Root mean square of the distance to the mission's path while coupled, m.
         final_error_m: Distance to the target at the end of the hold, m.
@@ -19,13 +20,13 @@ class Measures(Struct, frozen=True):
         least_clearance_m: From the hull to the nearest obstacle, the least in the air, m.
         collisions: Contacts with obstacles.
         gates_missed: Share of the gates not flown through, 0 to 1.
-        smoothness: Spectral arc length of the vehicle's speed while coupled: negative, nearer to 0 is smoother
-            (Balasubramanian et al. 2015, On the analysis of movement smoothness).
+        smoothness: Spectral arc length of the vehicle's speed while coupled: negative, nearer to 0 is smoother.
         disagreement_mps: Mean of |v_ref − v_safe| while coupled, m/s: how much the guard had to change.
         effort_n: Mean force the hand held against while coupled, N.
     """
 
     time_s: float = math.nan
+    reached: float = math.nan
     rms_error_m: float = math.nan
     path_error_m: float = math.nan
     final_error_m: float = math.nan

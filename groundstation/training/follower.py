@@ -5,6 +5,7 @@ from __future__ import annotations
 from groundstation.bus import Bus
 from groundstation.console import Snapshot
 from groundstation.messages import MISSION_PROGRESS, Phase
+from groundstation.training.conducting import Conductor
 from groundstation.training.director import Director, Stage
 from groundstation.training.mission import Mission
 from sim.airframe import load_airframe
@@ -26,6 +27,7 @@ class MissionFollower:
         radius = load_airframe(mission.vehicle.airframe).radius
         self._begin = lambda: Director(mission, World(mission.obstacle), radius)
         self.director = self._begin()
+        self._conductor = Conductor(mission, bus)
         self._progress = bus.publisher(MISSION_PROGRESS)
         self._seen_t = 0.0
         self._controlled_t = 0.0
@@ -46,4 +48,5 @@ class MissionFollower:
             self._controlled_t = pilot.t
             force = tuple(view.handle.force) if view.handle else (0.0, 0.0, 0.0)
             self.director.controller((pilot.error[0], pilot.error[1], pilot.error[2]), force)
+        self._conductor.look(self.director, view.t)
         self._progress.send(self.director.progress(view.t))

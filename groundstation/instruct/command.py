@@ -15,6 +15,7 @@ from groundstation.instruct.wanted import WANTED
 from groundstation.messages import EVENT_TEXT, CommandKind, InterventionAnswer
 from groundstation.status_line import StatusLine
 from groundstation.terminal import has_screen
+from groundstation.training.answering import WELCOME_S
 from groundstation.training.happening import Happening, words
 
 # What is done to the vehicle waits for its word, however silent its link; longer than the link tries, s.
@@ -61,6 +62,8 @@ def _act(asked: argparse.Namespace, taken: Seat) -> int:
 
 def _status(taken: Seat) -> int:
     taken.heard(_FIRST_S, lambda: taken.look().status)
+    # Told again to who comes late is what was done.
+    time.sleep(2 * WELCOME_S)
     view = taken.look()
     for name, told in status(taken.run, view, taken.in_force.told(view.t)):
         print(f"{name:<9} {told}")

@@ -80,8 +80,10 @@ def _flying(view: Snapshot, pilot: PilotState) -> list[str]:
 
 def _vehicle(view: Snapshot) -> str:
     status = view.status
-    if status is None or not status.connected:
+    if status is None or not status.heard_t:
         return "no vehicle"
+    if not status.connected:
+        return "not connected"
     words = [_MODES.get(status.mode, "?"), _armed(status)]
     if view.vehicle is not None:
         words += _moving(view.vehicle, view.t)

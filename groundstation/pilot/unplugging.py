@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from groundstation.bus import Bus
+from groundstation.clock import Every
 from groundstation.devices.unpluggable import Unpluggable
 from groundstation.messages import INTERVENTION, INTERVENTION_ANSWER
-from groundstation.training.answering import REAL, answer_to
+from groundstation.training.answering import REAL, WELCOME_S, answer_to
 from groundstation.training.events import DeviceLoss
 from groundstation.training.happening import Calm, unpacked
 
@@ -23,6 +24,7 @@ class Unplugging:
         self._device, self._simulated = device, simulated
         self._asked = bus.subscriber(INTERVENTION)
         self._answers = bus.publisher(INTERVENTION_ANSWER)
+        self._welcome = Every(WELCOME_S)
 
     def turn(self, now: float) -> None:
         """Do what was asked for, at `now`, monotonic s."""
@@ -35,3 +37,5 @@ class Unplugging:
                 if self._simulated:
                     self._device.unplug(happening.duration_s)
                 self._answers.send(answer_to(asked, "" if self._simulated else REAL, now))
+        if self._welcome.due(now):
+            self._answers.welcome()

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from groundstation.messages import ANSWER_TEXT, Intervention, InterventionAnswer, fit
 
+# An instructor who comes late gets to know within this what has been done, s.
+WELCOME_S = 0.2
 REAL = "the vehicle is real; this is for simulated ones"
 
 

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import math
+from typing import NamedTuple
+
 from groundstation.training.events import (
     BatteryLeft,
     Delay,
@@ -30,22 +33,31 @@ STATES: dict[type[Happening], str] = {
 _CHARGE_S = 5.0
 
 
+class _Done(NamedTuple):
+    """What was done, from when until when it is in force, s."""
+
+    happening: Happening
+    begins: float
+    ends: float
+
+
 class InForce:
-    """Takes note of what was done, in the order of time."""
+    """Takes note of what was done; that of one kind must come in the order of time."""
 
     def __init__(self) -> None:
-        self._done: dict[type[Happening], tuple[Happening, float]] = {}
+        self._done: dict[type[Happening], _Done] = {}
+        self._taken_back_t = -math.inf
 
     def take(self, happening: Happening, t: float) -> None:
         """Take note of something done at `t`, s; what is of its kind it replaces."""
         if isinstance(happening, Calm):
-            self._done.clear()
+            self._taken_back_t = max(self._taken_back_t, t)
         else:
-            self._done[type(happening)] = (happening, _end(happening, t))
+            self._done[type(happening)] = _Done(happening, t, _end(happening, t))
 
     def at(self, t: float) -> list[Happening]:
         """Return what is in force at a time, s, the gravest first."""
-        return [self._done[kind][0] for kind in STATES if kind in self._done and t < self._done[kind][1]]
+        return [done.happening for done in self._at(t)]
 
     def state(self, t: float) -> str:
         """Return a lane's word for it."""
@@ -54,13 +66,16 @@ class InForce:
 
     def told(self, t: float) -> str:
         """Return all of it in words."""
-        told = [f"{words(each)}{self._left(each, t)}" for each in self.at(t)]
-        return "; ".join(told) or NOTHING
+        return "; ".join(f"{words(done.happening)}{_left(done, t)}" for done in self._at(t)) or NOTHING
 
-    def _left(self, happening: Happening, t: float) -> str:
-        left = self._done[type(happening)][1] - t
-        lasts = isinstance(happening, LinkLoss | DeviceLoss | GpsLoss | GustNow)
-        return f" ({left:.0f} s left)" if lasts else ""
+    def _at(self, t: float) -> list[_Done]:
+        known = [self._done[kind] for kind in STATES if kind in self._done]
+        return [done for done in known if done.begins > self._taken_back_t and t < done.ends]
+
+
+def _left(done: _Done, t: float) -> str:
+    lasts = isinstance(done.happening, LinkLoss | DeviceLoss | GpsLoss | GustNow)
+    return f" ({done.ends - t:.0f} s left)" if lasts else ""
 
 
 def _end(happening: Happening, t: float) -> float:
@@ -75,4 +90,4 @@ def _end(happening: Happening, t: float) -> float:
         case Delay(round_trip_s=0.0, jitter_s=0.0) | Loss(share=0.0):
             return t
         case _:
-            return float("inf")
+            return math.inf

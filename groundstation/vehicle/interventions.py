@@ -15,8 +15,9 @@ from mavsdk import System
 from mavsdk.plugins.param import Param, ParamError, ParamResult
 
 from groundstation.bus import Bus
+from groundstation.clock import Every
 from groundstation.messages import INTERVENTION, INTERVENTION_ANSWER, Intervention
-from groundstation.training.answering import REAL, answer_to
+from groundstation.training.answering import REAL, WELCOME_S, answer_to
 from groundstation.training.events import (
     BatteryLeft,
     Delay,
@@ -85,6 +86,7 @@ class Interventions:
         self._asked = bus.subscriber(INTERVENTION)
         self._answers = bus.publisher(INTERVENTION_ANSWER)
         self._writer: Writer | None = None
+        self._welcome = Every(WELCOME_S)
 
     def attach(self, system: System, gate: Gate, silence: Callable[[], float]) -> None:
         """Have a vehicle to do it to.
@@ -114,6 +116,9 @@ class Interventions:
         while self._writer and not self._writer.done.empty():
             asked, why = self._writer.done.get()
             self._answer(asked, why, now)
+
+        if self._welcome.due(now):
+            self._answers.welcome()
 
     def close(self) -> bool:
         """End the thread; say whether MAVSDK may be taken away now."""

@@ -363,8 +363,11 @@ def _open_tlog(run: Run, notes: Notes) -> TlogWriter | None:
 
 
 def _note_log(notes: Notes, level: int, text: str) -> bool:
-    """Keep MAVSDK's own lines off the terminal; its warnings become events."""
-    if level >= int(mavsdk.LogLevel.WARN):
+    """Keep MAVSDK's own lines off the terminal; its warnings become events.
+
+    Not those of the simulator's parameters: whose they are the trainee would not learn from a real vehicle.
+    """
+    if level >= int(mavsdk.LogLevel.WARN) and "(SIM_" not in text:
         notes.put((Severity.WARNING, f"MAVSDK: {text}"))
     return True
 

@@ -38,7 +38,9 @@ def fill(parser: argparse.ArgumentParser) -> None:
     check = acts.add_parser("check", help="say whether missions can be flown, and what is wrong")
     check.add_argument("files", nargs="+", type=Path, metavar="FILE")
     _fill_new(acts.add_parser("new", help="make a mission out of a seed or of a recorded flight"))
-    _fill_measure(acts.add_parser("measure", help="find the par: simulated operators fly it", description=_MEASURE))
+    _fill_measure(
+        acts.add_parser("measure", help="find the par: simulated operators fly it", description=_MEASURE)
+    )
 
 
 def _fill_measure(parser: argparse.ArgumentParser) -> None:

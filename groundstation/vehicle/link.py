@@ -46,6 +46,7 @@ from groundstation.vehicle.asleep import Sleep
 from groundstation.vehicle.commander import STEERING, Answer, Commander
 from groundstation.vehicle.gate import Gate
 from groundstation.vehicle.identity import Identity
+from groundstation.vehicle.interventions import Interventions
 from groundstation.vehicle.obstacle_view import ObstacleView
 from groundstation.vehicle.offboard import Act, OffboardStream, Seen
 from groundstation.vehicle.parameter_desk import PARAMETER_COMMANDS, ParameterDesk
@@ -117,6 +118,7 @@ class Link:
         self._obstacles: ObstacleView | None = None
         self._desk: ParameterDesk | None = None
         self._identity: Identity | None = None
+        self._interventions = Interventions(bus, simulated=run.simulated)
         self._given = 0
         self._denials: deque[tuple[float, str]] = deque(maxlen=4)
         self._next_status = 0.0
@@ -139,6 +141,7 @@ class Link:
             self._identity.turn()
         for command in self._commands.drain():
             self._obey(command, now)
+        self._interventions.turn(now)
         self._pass_on_sights()
         if self._desk:
             for answer in self._desk.pass_on(now, self._view.boots):
@@ -161,7 +164,8 @@ class Link:
 
     def close(self) -> bool:
         """End what waits for the vehicle; say whether MAVSDK may be taken away now."""
-        return self._desk is None or self._desk.close()
+        freed = self._interventions.close()
+        return (self._desk is None or self._desk.close()) and freed
 
     def _wake(self) -> None:
         """After a sleep nothing that was being flown goes on, however young the monotonic clock says it is."""
@@ -190,6 +194,7 @@ class Link:
         self._obstacles = ObstacleView(system, self._view.yaw, self._notes, time.monotonic)
         self._desk = ParameterDesk(self._bus, system, self._gate, profile)
         self._identity = Identity(system, time.monotonic)
+        self._interventions.attach(system, self._gate, lambda: time.monotonic() - self._pump.heard_t)
         self._view.attach(system, self._run.settings.rates.telemetry)
         self._status.system_id, self._status.autopilot = system.get_system_id(), system.autopilot_type()
         kind = profile.label if profile else "unknown autopilot"
@@ -383,8 +388,11 @@ def _open_tlog(run: Run, notes: Notes) -> TlogWriter | None:
 
 
 def _note_log(notes: Notes, level: int, text: str) -> bool:
-    """Keep MAVSDK's own lines off the terminal; its warnings become events."""
-    if level >= int(mavsdk.LogLevel.WARN):
+    """Keep MAVSDK's own lines off the terminal; its warnings become events.
+
+    Not those of the simulator's parameters: whose they are the trainee would not learn from a real vehicle.
+    """
+    if level >= int(mavsdk.LogLevel.WARN) and "(SIM_" not in text:
         notes.put((Severity.WARNING, f"MAVSDK: {text}"))
     return True
 

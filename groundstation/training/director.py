@@ -172,6 +172,11 @@ class Director:
         """Whether nothing is left but to land: the target was held, or there is none behind the route."""
         return self.stage in {Stage.RETURNING, Stage.LANDING, Stage.FREE}
 
+    @property
+    def missed(self) -> tuple[Gate, ...]:
+        """The gates not flown through yet."""
+        return tuple(self._gates)
+
     def elapsed(self, t: float) -> float:
         """Return the time since take-off, s; 0 before it."""
         return 0.0 if self.stage is Stage.WAITING else t - self._took_off_t

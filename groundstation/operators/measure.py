@@ -132,12 +132,12 @@ def _fault(flown: Sequence[Flown]) -> str:
 
 def _missions(asked: argparse.Namespace) -> list[Asked]:
     """Read what is to be measured."""
-    if asked.all == bool(asked.files):
+    if asked.all == bool(asked.missions):
         raise InputError("Give missions by name or file, or --all for those that come with the program.")
     paths = (
         sorted(MISSIONS_FOLDER.glob(f"*{SUFFIX}"))
         if asked.all
-        else [find_mission(name) for name in asked.files]
+        else [find_mission(name) for name in asked.missions]
     )
     found = [Asked(path, load_mission(path)) for path in paths]
     for path, mission in found:

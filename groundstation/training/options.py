@@ -14,13 +14,17 @@ examples:
   groundstation missions list                                        the exercises, from the first on
   groundstation missions show slalom                                 what it asks, how it is passed, a map
   groundstation missions check mine.toml                             can it be flown?
-  groundstation missions measure mine.toml                           its par: simulated operators fly it
+  groundstation missions measure mine.toml                           its par, by simulated operators
   groundstation missions new --kind forest --seed 7 --out wood.toml  an obstacle course
   groundstation missions new --kind gates --level 5 --out -          a hard one, to look at
   groundstation missions new --from last --out again.toml            the way of the last flight
 
-exit codes: 0 done; 1 a mission cannot be flown as it is, and why is told; 2 bad input
+exit codes: 0 done; 1 a mission cannot be flown as it is, and why is told; 2 bad input; 130 stopped
 """
+_MEASURE = """\
+A novice, an average and an expert operator fly each mission in virtual time, and once a hand that does nothing. What
+they reach is written to reference/NAME.json beside the mission: its par, and a ghost to follow. It is not written where
+the expert does not pass, or where doing nothing does: then the exit code is 1."""
 RUN = "groundstation.missions_command:run"
 
 
@@ -33,22 +37,17 @@ def fill(parser: argparse.ArgumentParser) -> None:
     show.add_argument("mission", metavar="NAME", help="by name or .toml file")
     check = acts.add_parser("check", help="say whether missions can be flown, and what is wrong")
     check.add_argument("files", nargs="+", type=Path, metavar="FILE")
-    measure = acts.add_parser(
-        "measure",
-        help="find a mission's par: simulated operators fly it in virtual time",
-        description="""\
-A novice, an average and an expert operator fly each mission on the same seeds, in virtual time, and once a hand that
-does nothing. What they reach is written to reference/NAME.json beside the mission: its par, and a ghost to follow.
-Exit codes: 0 measured, 1 a mission cannot be flown by the expert or is passed by doing nothing, 2 bad input,
-130 stopped.""",
-    )
-    measure.add_argument("files", nargs="*", metavar="MISSION", help="names or files")
-    measure.add_argument("--all", action="store_true", help="all that come with the program")
-    measure.add_argument("--seeds", type=int, default=5, metavar="N", help="how many, from 0 (default: 5)")
-    measure.add_argument(
+    _fill_new(acts.add_parser("new", help="make a mission out of a seed or of a recorded flight"))
+    _fill_measure(acts.add_parser("measure", help="find the par: simulated operators fly it", description=_MEASURE))
+
+
+def _fill_measure(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("missions", nargs="*", metavar="NAME", help="by name or .toml file")
+    parser.add_argument("--all", action="store_true", help="all that come with the program")
+    parser.add_argument("--seeds", type=int, default=5, metavar="N", help="how many, from 0 (default: 5)")
+    parser.add_argument(
         "--jobs", type=int, metavar="N", help="processes (default: as many as there are cores)"
     )
-    _fill_new(acts.add_parser("new", help="make a mission out of a seed or of a recorded flight"))
 
 
 def _fill_new(parser: argparse.ArgumentParser) -> None:

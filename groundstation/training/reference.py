@@ -40,7 +40,7 @@ class Reference(Struct, frozen=True):
 
 
 def digest_of(mission: Mission) -> str:
-    """Return a digest of all that a flight of the mission depends on: not of texts, nor of its place in the school."""
+    """Return a digest of all that a flight depends on: neither texts nor the place in the school are part of it."""
     plain = msgspec.structs.replace(
         mission,
         name="-",

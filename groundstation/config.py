@@ -236,7 +236,7 @@ class Safety(Struct, frozen=True, forbid_unknown_fields=True):
     force_stale_s: Annotated[float, Meta(gt=0, le=0.5)] = 0.1
     handle_stale_s: Annotated[float, Meta(gt=0, le=0.15)] = 0.1
     setpoint_stale_s: Annotated[float, Meta(gt=0, le=0.15)] = 0.15
-    link_warning_s: Annotated[float, Meta(gt=0, le=5.0)] = 0.5
+    link_warning_s: Annotated[float, Meta(gt=0, le=5.0)] = 0.4
 
 
 class Rates(Struct, frozen=True, forbid_unknown_fields=True):

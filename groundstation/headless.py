@@ -227,8 +227,7 @@ class OperatorHand:
         mission = director.mission
         self._director = director
         self.patience_s = mission.criteria.time_limit_s + _GRACE_S
-        route, target = mission.route, mission.target
-        self._operator = Operator(route, target.position, seed=seed) if target else None
+        self._operator = Operator(mission.way[:-1], mission.way[-1], seed=seed) if mission.way else None
         self._settings = mapping
         self._mapping: RateMapping | None = None
         self._workspace = 0.0
@@ -274,7 +273,8 @@ def fly_headless(run: Run, bus: Bus, supervisor: Supervisor, *, as_json: bool, s
     flight = outing.flight(hand)
     view = outing.fly(flight, hand)
     supervisor.stop()
-    return summarise(run, outing.director, view.servo, flight.failure, as_json=as_json)
+    outing.follower.finish()
+    return summarise(run, outing.follower.measurer, view.servo, flight.failure, as_json=as_json)
 
 
 class Outing:
@@ -287,6 +287,7 @@ class Outing:
         supervisor: Of the run's processes.
 
     Attributes:
+        follower: Measures the flight.
         director: Follows the mission.
         sender: Moves the scripted hand.
     """
@@ -294,8 +295,8 @@ class Outing:
     def __init__(self, run: Run, mission: Mission, bus: Bus, supervisor: Supervisor) -> None:
         self._bus, self._supervisor = bus, supervisor
         self._console = Console(bus, "headless")
-        self._follower = MissionFollower(mission, bus)
-        self.director = self._follower.director
+        self.follower = MissionFollower(mission, bus)
+        self.director = self.follower.director
         self.sender = StickSender(str(run.hand))
 
     def flight(self, hand: Hand) -> HeadlessFlight:
@@ -311,7 +312,7 @@ class Outing:
                 for sentence in self._supervisor.poll():
                     flight.abort(sentence)
                 view = self._console.snapshot()
-                self._follower.look(view)
+                self.follower.look(view)
                 flight.turn(view)
                 narrator.tell(flight.step.value, hand.told(view), view)
                 self._bus.heartbeat()

@@ -9,6 +9,7 @@ from msgspec import Struct
 
 from groundstation.config import Settings
 from groundstation.run_folder import run_folder
+from groundstation.training.measures import Measures
 from groundstation.training.mission import Mission
 
 RUN_FILE = "run.json"
@@ -33,6 +34,9 @@ class Run(Struct, frozen=True):
         pilot: Who flies, as people know them.
         seed: Of all that is random in the simulation.
         config: The settings file, or "" where they are the defaults.
+        par: What the flight is held against; None where nobody has flown the mission for reference.
+        par_from: Whose it is, in words, or "".
+        signing_key: The file with the key for MAVLink signing, or "". The key itself is nowhere but there.
     """
 
     run_id: str
@@ -50,6 +54,9 @@ class Run(Struct, frozen=True):
     pilot: str = ""
     seed: int = 0
     config: str = ""
+    par: Measures | None = None
+    par_from: str = ""
+    signing_key: str = ""
 
     @property
     def hand(self) -> Path | None:

@@ -285,7 +285,7 @@ class CannedFollower:
         self._seen_t = view.vehicle.t
         x, y, z, _ = view.vehicle.position
         flags = {"in_air": bool(view.status.in_air), "armed": bool(view.status.armed)}
-        self.director.vehicle(view.vehicle.t, (x, y, z), **flags)
+        self.director.vehicle(view.vehicle.t, (x, y, z, 0.0), **flags)
         if view.pilot is not None and view.pilot.phase == Phase.ENGAGED:
             force = (0.0, 0.0, 0.0) if view.handle is None else tuple(view.handle.force)
             self.director.controller(tuple(view.pilot.error)[:3], force)

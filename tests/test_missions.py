@@ -1,6 +1,7 @@
 """Mission files and settings: what is right loads, whatever is wrong gets one sentence with file and key."""
 
 import math
+import re
 from pathlib import Path
 
 import pytest
@@ -9,7 +10,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from groundstation.config import ConfigError, Settings, load_settings
-from groundstation.training.mission import MISSIONS_FOLDER, MissionError, find_mission, load_mission
+from groundstation.training.events import Delay
+from groundstation.training.mission import MISSIONS_FOLDER, MissionError, Waypoint, find_mission, load_mission
 from sim.scenario import Scenario, ScenarioError, load_scenario
 
 MINIMAL = 'schema = 1\nname = "m"\ntitle = "t"\n'
@@ -234,3 +236,43 @@ def test_defaults_are_within_their_own_bounds():
     assert safety.setpoint_stale_s <= 0.15
     assert safety.force_stale_s <= safety.state_stale_s
     assert all(math.isfinite(gain) and gain > 0 for gain in Settings().control.k1)
+
+
+SCHOOLED = """
+[[route]]
+at = [1, 2, 3]
+hold_s = 2
+yaw_deg = 90
+say = "Look north."
+[landing]
+pad = "north"
+[[pad]]
+name = "north"
+position = [4, 0, 0]
+[[event]]
+kind = "delay"
+leg = 1
+round_trip_s = 0.3
+"""
+
+
+def test_a_route_takes_points_and_whole_waypoints_and_leads_to_the_pad(tmp_path):
+    mission = load_mission(written(tmp_path, MINIMAL + SCHOOLED))
+    assert mission.waypoints == (Waypoint((1, 2, 3), hold_s=2, yaw_deg=90, say="Look north."),)
+    assert mission.way == ((1, 2, 3), (4, 0, 2))
+    assert mission.event == (Delay(leg=1, round_trip_s=0.3),)
+    bare = load_mission(written(tmp_path, MINIMAL + "route = [[1, 2, 3]]\n"))
+    assert bare.waypoints == (Waypoint((1, 2, 3)),)
+
+
+@pytest.mark.parametrize(
+    ("wrong", "said"),
+    [
+        (SCHOOLED.replace('pad = "north"', 'pad = "south"'), "no [[pad]] named 'south'"),
+        (SCHOOLED.replace("leg = 1", "leg = 2"), "leg = 2 never comes"),
+        (SCHOOLED.replace('"delay"', '"magic"'), "kind"),
+    ],
+)
+def test_what_a_mission_names_must_exist(tmp_path, wrong, said):
+    with pytest.raises(MissionError, match=re.escape(said)):
+        load_mission(written(tmp_path, MINIMAL + wrong))

@@ -7,9 +7,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from groundstation.training.director import Director, Stage
-from groundstation.training.mission import Criteria, Mission, Target
+from groundstation.training.mission import Criteria, Landing, Mission, Target, Waypoint
 from sim.environment.world import World
-from sim.scenario import Gate, Sphere
+from sim.scenario import Gate, Pad, Sphere
 
 BALL = Sphere(name="ball", center=(5.0, 0.0, 2.0), radius=1.0)
 
@@ -29,7 +29,7 @@ def director(route=((3.0, 3.0, 2.0),), hold_s=1.0, obstacles=(BALL,), **criteria
 
 def fly(it: Director, points, dt=0.1, t=0.0, in_air=True, armed=True) -> float:
     for point in points:
-        it.vehicle(t, point, in_air=in_air, armed=armed)
+        it.vehicle(t, (*point, 0.0), in_air=in_air, armed=armed)
         t += dt
     return t
 
@@ -115,7 +115,7 @@ points = st.tuples(*[st.floats(-20, 20)] * 3)
 def test_any_flight_is_followed(path):
     it = director()
     for number, (point, in_air, armed) in enumerate(path):
-        it.vehicle(number * 0.1, point, in_air=in_air, armed=armed)
+        it.vehicle(number * 0.1, (*point, 0.0), in_air=in_air, armed=armed)
     assert it.figures.path >= 0
     assert it.shortcomings() or it.stage is Stage.DONE
     assert 0 <= it.leg <= it.legs
@@ -144,3 +144,34 @@ def test_a_flight_without_a_target_is_free_once_its_route_is_flown():
     assert (it.stage, it.at_the_end) == (Stage.ROUTE, False)
     fly(it, [(3.0, 0.0, 2.0)] * 2, t=t)
     assert (it.stage, it.at_the_end) == (Stage.FREE, True)
+
+
+def test_a_point_can_ask_for_a_stay_and_for_a_heading():
+    mission = Mission(1, "yaw", "", route=(Waypoint((2.0, 0.0, 2.0), radius=0.5, hold_s=1.0, yaw_deg=90.0),))
+    it = Director(mission, World(()), radius=0.3)
+    it.vehicle(0.0, (0.0, 0.0, 2.0, 0.0), in_air=True, armed=True)
+    it.vehicle(0.1, (0.0, 0.0, 2.0, 0.0), in_air=True, armed=True)
+    for number in range(30):
+        it.vehicle(1.0 + 0.1 * number, (2.0, 0.0, 2.0, 0.0), in_air=True, armed=True)
+    assert it.leg == 0, "the nose points east"
+    for number in range(12):
+        it.vehicle(5.0 + 0.1 * number, (2.0, 0.0, 2.0, 1.5), in_air=True, armed=True)
+        if number == 5:
+            assert it.stage is Stage.STAYING
+    assert it.leg == 1
+    assert it.stage is Stage.FREE
+
+
+@pytest.mark.parametrize(("x", "right"), [(5.2, True), (6.0, False)])
+def test_a_flight_that_must_end_on_a_pad_is_judged_by_where_it_stands(x, right):
+    mission = Mission(1, "pad", "", landing=Landing("north"), pad=(Pad("north", (5.0, 0.0, 0.0), 0.6),))
+    it = Director(mission, World(()), radius=0.3)
+    it.vehicle(0.0, (0.0, 0.0, 2.0, 0.0), in_air=True, armed=True)
+    it.vehicle(0.1, (0.0, 0.0, 2.0, 0.0), in_air=True, armed=True)
+    it.vehicle(0.2, (0.0, 0.0, 2.0, 0.0), in_air=True, armed=True)
+    assert it.stage is Stage.LANDING
+    assert it.goal is not None
+    assert it.goal.at == (5.0, 0.0, 0.0)
+    it.vehicle(9.0, (x, 0.0, 0.0, 0.0), in_air=False, armed=False)
+    assert it.figures.landing_error == pytest.approx(x - 5.0)
+    assert (not it.shortcomings()) == right

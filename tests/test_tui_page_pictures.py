@@ -33,10 +33,10 @@ class Flown:
             flight.advance(0.1)
             shown = flight.snapshot()
             x, y, z, _ = shown.vehicle.position
-            self.director.vehicle(shown.t, (x, y, z), in_air=True, armed=True)
+            self.director.vehicle(shown.t, (x, y, z, 0.0), in_air=True, armed=True)
             error = shown.pilot.error
             self.director.controller((error[0], error[1], error[2]), tuple(shown.handle.force))
-        self.director.vehicle(shown.t, (x, y, z), in_air=False, armed=False)
+        self.director.vehicle(shown.t, (x, y, z, 0.0), in_air=False, armed=False)
 
     def look(self, view) -> None:
         """It has seen it all."""

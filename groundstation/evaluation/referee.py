@@ -7,7 +7,7 @@ import math
 from groundstation.evaluation.case import Outcome
 from groundstation.evaluation.flight import VirtualFlight
 from groundstation.evaluation.sample import Sample
-from groundstation.frames import Vector3
+from groundstation.frames import Vector4
 from groundstation.messages import Phase
 from groundstation.pilot.pilot import Outputs
 from groundstation.training.director import Director, Stage
@@ -45,19 +45,19 @@ class Referee:
 
     def __call__(self, sample: Sample) -> None:
         """Take note of a sample while there is something to fly."""
-        x, y, z, _ = sample.p
         if not self._took_off:
             self._took_off = True
-            self._director.vehicle(0.0, (x, y, 0.0), in_air=True, armed=True)
+            x, y, _, yaw = sample.p
+            self._director.vehicle(0.0, (x, y, 0.0, yaw), in_air=True, armed=True)
         if self.target_held:
             return
-        self._director.vehicle(sample.t, (x, y, z), in_air=True, armed=True)
+        self._director.vehicle(sample.t, sample.p, in_air=True, armed=True)
         if self.target_held:
             self._held_t = sample.t
         if sample.phase is Phase.ENGAGED:
             self._note(sample)
 
-    def landed(self, t: float, position: Vector3) -> None:
+    def landed(self, t: float, position: Vector4) -> None:
         """Take note of the landing, at `t` s since take-off."""
         self._director.vehicle(t, position, in_air=False, armed=False)
 

@@ -59,8 +59,7 @@ def fly(task: Task, observers: tuple[Observer, ...] = ()) -> Result:
         flight.local.coupling.land()
         flight.fly(_LANDING_S, lambda: not autopilot.armed)
         if not autopilot.armed:
-            x, y, z, _ = flight.vehicle.p
-            referee.landed(flight.t, (x, y, z))
+            referee.landed(flight.t, flight.vehicle.p)
     return Result(task.id, case, referee.outcome(flight, time.thread_time() - began))
 
 
@@ -103,6 +102,6 @@ def _hand(task: Task, mapping: RateMapping, _: DeviceInfo) -> OperatorHand:
     mission, case = task.mission, task.case
     assert mission.target is not None
     operator = Operator(
-        mission.route, mission.target.position, accustomed(PEOPLE[case.operator], case.delay), case.seed
+        mission.way[:-1], mission.way[-1], accustomed(PEOPLE[case.operator], case.delay), case.seed
     )
     return OperatorHand(operator, mapping)

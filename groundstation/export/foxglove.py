@@ -129,9 +129,8 @@ def _shapes(mission: Mission) -> Iterator[tuple[str, str, Json]]:
     if target:
         across = 2.0 * target.radius
         yield "target", "spheres", _shape(target.position, (across, across, across), palette.GREEN, alpha=0.4)
-    points = [*mission.route, *([target.position] if target else [])]
-    if points:
-        yield "route", "lines", _line([(0.0, 0.0, mission.takeoff_altitude_m), *points])
+    if mission.way:
+        yield "route", "lines", _line(mission.path)
 
 
 def _solid(part: Primitive) -> tuple[str, Json]:

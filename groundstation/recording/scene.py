@@ -89,8 +89,7 @@ def extent(mission: Mission | None) -> tuple[Numbers, Numbers]:
     if mission:
         points += [corner for obstacle in mission.obstacle for corner in reached(obstacle)]
         points += [pad.position for pad in mission.pad]
-        points += mission.route
-        points += [mission.target.position] if mission.target else []
+        points += mission.way
     return np.min(points, axis=0), np.max(points, axis=0)
 
 
@@ -107,9 +106,7 @@ def _ground(mission: Mission | None) -> rr.Mesh3D:
 
 
 def _route(mission: Mission) -> rr.LineStrips3D:
-    start = (0.0, 0.0, mission.takeoff_altitude_m)
-    end = (mission.target.position,) if mission.target else ()
-    return rr.LineStrips3D([[start, *mission.route, *end]], colors=[palette.GREEN], radii=[-0.75])
+    return rr.LineStrips3D([mission.path], colors=[palette.GREEN], radii=[-0.75])
 
 
 def _entity(name: str) -> str:

@@ -105,8 +105,7 @@ class ReplayRecorder:
         self._session.take(self._collector.taken())
 
     def _progress(self, sample: Sample, *, coupled: bool) -> MissionProgress:
-        x, y, z, _ = sample.p
-        self._director.vehicle(sample.t, (x, y, z), in_air=True, armed=True)
+        self._director.vehicle(sample.t, sample.p, in_air=True, armed=True)
         if coupled:
             self._director.controller(sample.outputs.error[:3], sample.outputs.force)
         return self._director.progress(sample.t)

@@ -101,15 +101,14 @@ def fly(mission: Mission, settings: Settings, seed: int, watch: Watcher) -> Flow
     """
     assert mission.target is not None
     target = mission.target.position
-    operator = Operator(mission.route, target, seed=seed)
+    operator = Operator(mission.way[:-1], target, seed=seed)
     setup = Setup(scenario_of(mission, mission.wind), mission.takeoff_altitude_m, settings, seed=seed)
     radius = load_airframe(mission.vehicle.airframe).radius
     director = Director(mission, World(mission.obstacle), radius)
     recorder = SeriesRecorder(mission.obstacle, radius)
 
     def observe(sample: Sample) -> None:
-        x, y, z, _ = sample.p
-        director.vehicle(sample.t, (x, y, z), in_air=True, armed=True)
+        director.vehicle(sample.t, sample.p, in_air=True, armed=True)
         recorder(sample)
         watch(director)
 

@@ -128,8 +128,7 @@ def _points(mission: Mission | None) -> list[Point]:
     """Return what shall always be seen, world, m."""
     found: list[Point] = [(-LEAST_HALF_M / 2, 0.0, 0.0), (LEAST_HALF_M / 2, 0.0, LEAST_UP_M)]
     if mission is not None:
-        found += mission.route
-        found += [mission.target.position] if mission.target else []
+        found += mission.way
         found += [corner for obstacle in mission.obstacle for corner in extent(obstacle)]
         for pad in mission.pad:
             east, north, up = pad.position

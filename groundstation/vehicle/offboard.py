@@ -104,6 +104,12 @@ class OffboardStream:
         """The vehicle did not say whether it went to offboard; it may have."""
         return self._end(Act.CLOSE_AND_HOLD, "the vehicle did not answer to offboard; it holds")
 
+    def interrupted(self, why: str) -> tuple[Act, str]:
+        """Nothing can be said of the time that has passed: what streamed ends."""
+        if self.state in {Stream.STARTING, Stream.FLYING}:
+            return self._end(Act.CLOSE_AND_HOLD, why)
+        return Act.NOTHING, ""
+
     def _starting(self, seen: Seen) -> tuple[Act, str]:
         if not self._asked:
             self._asked = seen.now - self._started_t >= LEAD_S

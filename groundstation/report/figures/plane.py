@@ -81,8 +81,9 @@ def _hulls(axes: Axes, view: View, plane: list[int]) -> None:
 def _marks(axes: Axes, view: View, plane: list[int]) -> None:
     """Mark the points that the operator was told to pass, and the target."""
     if view.mission.route:
+        points = np.array([point.at for point in view.mission.waypoints])
         axes.plot(
-            *np.array(view.mission.route)[:, plane].T, linestyle="none", marker="o", markersize=3,
+            *points[:, plane].T, linestyle="none", marker="o", markersize=3,
             markerfacecolor="white", markeredgecolor=style.FAINT, markeredgewidth=style.THIN, label="route", zorder=2,
         )  # fmt: skip
     if view.mission.target:

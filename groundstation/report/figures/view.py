@@ -40,8 +40,7 @@ def view_of(series: FlightSeries, mission: Mission, radius: float) -> View:
     """Return the view that holds the whole flight with all obstacles, the ground included."""
     points = [series.p[:, :3].min(axis=0), series.p[:, :3].max(axis=0)]
     points += [np.array(corner) for obstacle in mission.obstacle for corner in extent(obstacle)]
-    points += [np.array(point) for point in mission.route]
-    points += [np.array(mission.target.position)] if mission.target else []
+    points += [np.array(point) for point in mission.way]
     low, high = np.min(points, axis=0) - _MARGIN_M, np.max(points, axis=0) + _MARGIN_M
     low[2] = 0.0
     return View(mission, series.t, series.p, series.p_h, series.wind, radius, low, high)

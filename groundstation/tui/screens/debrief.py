@@ -47,7 +47,7 @@ def _line(name: str, value: str, tone: Tone = Tone.STRONG) -> Row:
 
 def _result(director: Director) -> Iterator[Row]:
     yield _line("mission", f"{director.mission.name}: {director.mission.title}")
-    if director.mission.target is None:
+    if not director.mission.judged:
         yield _line("result", director.stage.value)
         return
     missing = director.shortcomings()

@@ -30,6 +30,7 @@ BENCHES = {
     "killed": "what a recording misses after a process of the flight was killed",
     "report": "report on a flight of ten minutes, and loading it",
     "identify": "how exactly χ comes back out of noisy flights of every preset",
+    "school": "every mission flown by simulated operators: who passes, and in which order",
     "shield": "full-stick adversaries through obstacle fields, with and without the guard",
 }
 

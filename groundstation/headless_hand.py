@@ -33,8 +33,8 @@ class OperatorHand:
 
     Attributes:
         patience_s: How long it may take, s.
-        hesitates_s: How long before the vehicle is taken back when the hand was uncoupled, s; infinite where the mission
-            does not uncouple it: then somebody else took the vehicle, and shall have it.
+        hesitates_s: How long before the vehicle is taken back when the hand was uncoupled, s; infinite where it is
+            not the mission that uncouples it: then somebody else took the vehicle, and shall have it.
     """
 
     def __init__(

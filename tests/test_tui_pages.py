@@ -165,8 +165,8 @@ async def test_preflight_says_of_every_check_how_it_is():
         shown = lines(scene)
         assert "✓ may be flown   ▲ 3 to know of" in shown
         for words in (
-            "haptic device", "handle", "servo", "link", "round trip, loss", "vehicle", "health", "since boot", "position",
-            "home", "battery", "fence", "speed limits", "mission",
+            "haptic device", "handle", "servo", "link", "round trip, loss", "vehicle", "health", "since boot",
+            "position", "home", "battery", "fence", "speed limits", "mission",
             "recording", *(each.name for each in JUDGED),
         ):  # fmt: skip
             assert words in shown

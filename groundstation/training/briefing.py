@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import textwrap
 from collections.abc import Iterator
+from pathlib import Path
 
 from groundstation.training.events import (
     BatteryLeft,
@@ -18,6 +19,8 @@ from groundstation.training.events import (
     WindChange,
 )
 from groundstation.training.mission import Mission
+from groundstation.training.par import par_in
+from groundstation.training.reference import load_reference, reference_fault
 from sim.scenario import Air, Point
 
 _HEAD = 9
@@ -25,21 +28,36 @@ _HEAD = 9
 _NAMED = 10
 
 
-def briefing(mission: Mission, width: int) -> list[str]:
+def briefing(mission: Mission, par: str, width: int) -> list[str]:
     """Return all that a trainee needs to know before the flight, in lines.
 
     Args:
         mission: What will be flown.
+        par: What there is to be reached, in words, or "".
         width: Of the longest line, characters.
     """
     rows = [("teaches", [mission.teaches]), ("watch", list(mission.watch)), ("asks", list(_asked(mission)))]
     rows += [("passed", list(_criteria(mission)) if mission.judged else ["nothing is judged"])]
+    rows += [("par", [par])]
     rows += [("happens", [event_words(event) for event in mission.event]), ("world", list(_world(mission)))]
     rows += [("trains", [", ".join(mission.skills)]), ("needs", [", ".join(mission.needs)])]
     lines = [mission.title, f"{mission.name}, level {mission.level}"]
     for head, sentences in rows:
         lines += _block(head, [sentence for sentence in sentences if sentence], width)
     return lines
+
+
+def par_words(mission: Mission, path: Path) -> str:
+    """Return what the reference operator reaches in a mission, or why that is not known, in words."""
+    par, who = par_in(load_reference(mission, path), 0)
+    if par is None:
+        return reference_fault(mission, path) if mission.judged else ""
+    reached = [f"{par.time_s:.0f} s", f"{par.rms_error_m:.2f} m RMS between hand and drone"]
+    if math.isfinite(par.final_error_m):
+        reached.append(f"{par.final_error_m:.2f} m off the target")
+    if math.isfinite(par.landing_error_m):
+        reached.append(f"{par.landing_error_m:.2f} m off the pad's middle")
+    return f"{', '.join(reached)}: {who}"
 
 
 def event_words(event: Event) -> str:

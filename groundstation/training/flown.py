@@ -11,7 +11,7 @@ from msgspec.structs import replace
 from groundstation.errors import InputError
 from groundstation.recording import lanes, schema
 from groundstation.review.flight import Flight, Numbers
-from groundstation.review.outcome import COUPLED, words_at
+from groundstation.review.sights import COUPLED, words_at
 from groundstation.training.courses import time_for
 from groundstation.training.mission import Criteria, Fence, Mission, Target, Waypoint
 

@@ -23,8 +23,8 @@ exit codes: 0 done; 1 a mission cannot be flown as it is, and why is told; 2 bad
 """
 _MEASURE = """\
 A novice, an average and an expert operator fly each mission in virtual time, and once a hand that does nothing. What
-they reach is written to reference/NAME.json beside the mission: its par, and a ghost to follow. Where the expert does
-not pass, or doing nothing does, none is written, and the exit code is 1."""
+they reach is written to reference/NAME.json beside the mission: its par, and a ghost to follow. It is not written
+where the expert does not pass, or where doing nothing does: then the exit code is 1."""
 RUN = "groundstation.missions_command:run"
 
 

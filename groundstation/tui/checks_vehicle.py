@@ -55,7 +55,7 @@ def identity(frame: Frame) -> Check:
     """Return who the vehicle is and what firmware it runs."""
     status = frame.snapshot.status
     if status is None or not status.connected:
-        return Check("vehicle", _DANGER, "not known", "switch it on, check the address")
+        return Check("vehicle", _CAUTION, "not known", "see the link")
     profile, version = profile_of(status.autopilot), words(status.firmware)
     component = f", component {status.component}" if status.component else ""
     who = f"system {status.system_id}{component}"
@@ -74,7 +74,7 @@ def health(frame: Frame) -> Check:
     """Return what the vehicle says of its sensors, and whether it can be armed."""
     status = frame.snapshot.status
     if status is None or not status.connected:
-        return Check("health", _DANGER, "not known", "switch it on, check the address")
+        return Check("health", _CAUTION, "not known", "see the link")
     known = Health(status.health)
     missing = [name for flag, name in _CALIBRATED.items() if flag not in known]
     if missing:

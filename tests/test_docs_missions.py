@@ -132,6 +132,6 @@ def test_skills_kinds_and_grades_are_those_there_are():
     )
     assert all(f"| `{kind}` |" in DOC for kind in KINDS)
     for level, grade in GRADES.items():
-        row = f"| {level} | {grade.spare:g} m | {grade.count} | {math.degrees(grade.turn):.0f}° |"
+        row = f"| {level} | {grade.spare:g} m | {grade.things} | {math.degrees(grade.turn):.0f}° |"
         shown = next(line for line in DOC.splitlines() if line.replace("1.0 m", "1 m").startswith(row))
         assert f"{grade.wind:g} m/s" in shown if grade.wind else "none" in shown

@@ -44,6 +44,7 @@ class Tap:
         setpoints: (time, payload) of every datagram with a setpoint, on its way to the vehicle.
         commands: (time, command) of every COMMAND_LONG on its way to the vehicle.
         heard: (time, datagram) of all that the vehicle said.
+        said: (time, datagram) of all that the program said.
         passes: Says of a datagram whether it passes, either way; all do at first.
     """
 
@@ -56,6 +57,7 @@ class Tap:
         self.setpoints: list[tuple[float, bytes]] = []
         self.commands: list[tuple[float, int]] = []
         self.heard: list[tuple[float, bytes]] = []
+        self.said: list[tuple[float, bytes]] = []
         self.program_port = int(self._program.getsockname()[1])
         self.vehicle_port = int(self._vehicle.getsockname()[1])
         self._thread = threading.Thread(target=self._relay, daemon=True)
@@ -85,6 +87,8 @@ class Tap:
                 self._peers[ready] = peer
                 if ready is self._vehicle:
                     self.heard.append((now, data))
+                else:
+                    self.said.append((now, data))
                 if not self.passes(data):
                     continue
                 if ready is self._program and data[0] == 0xFD and data[7] == SETPOINT_ID:
@@ -103,12 +107,17 @@ def _bound() -> socket.socket:
 
 
 class Hand:
-    """Holds a software handle at a place, repeating itself at 100 Hz; `put` returns when it went out."""
+    """Holds a software handle at a place, repeating itself at 100 Hz; `put` returns when it went out.
+
+    Attributes:
+        silent: It does not repeat itself.
+    """
 
     def __init__(self, path: str) -> None:
         self._sender = StickSender(path)
         self._lock = threading.Lock()
         self._place, self._buttons = (0.0, 0.0, 0.0), 0
+        self.silent = False
         self._running = True
         self._thread = threading.Thread(target=self._repeat, daemon=True)
         self._thread.start()
@@ -130,7 +139,8 @@ class Hand:
     def _repeat(self) -> None:
         while self._running:
             with self._lock:
-                self._sender.send(self._place, 0.0, self._buttons, time.monotonic())
+                if not self.silent:
+                    self._sender.send(self._place, 0.0, self._buttons, time.monotonic())
             time.sleep(0.01)
 
 

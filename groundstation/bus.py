@@ -39,6 +39,7 @@ class Publisher(Generic[R]):
 
     def __init__(self, port: Any, notifier: Any) -> None:
         self._send = port.send_copy
+        self._welcome = port.update_connections
         self._notify = notifier.notify if notifier else None
 
     def send(self, record: R) -> None:
@@ -46,6 +47,10 @@ class Publisher(Generic[R]):
         self._send(record)
         if self._notify:
             self._notify()
+
+    def welcome(self) -> None:
+        """Give who has come since the last record the topic's history; else they wait for the next record."""
+        self._welcome()
 
 
 class Subscriber(Generic[R]):

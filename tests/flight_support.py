@@ -144,6 +144,7 @@ class Stage:
         options: More of the program's own.
         device: What the hand holds, as for `--device`, with its socket to follow.
         push: How far the hand leads the vehicle, m.
+        vehicle_options: More of the vehicle's own.
         environment: Of the program and its processes.
 
     Attributes:
@@ -159,9 +160,11 @@ class Stage:
         *options: str,
         device: str = "virtual:",
         push: float = 0.06,
+        vehicle_options: tuple[str, ...] = (),
         environment: dict[str, str] | None = None,
     ) -> None:
         self._options, self._device, self._push, self._environment = options, device, push, environment
+        self._vehicle_options = vehicle_options
         self.hand_socket = str(folder / "hand.sock")
         self.mission = folder / "long.toml"
         self.mission.write_text(LONG)
@@ -177,7 +180,8 @@ class Stage:
         """Start the vehicle, standing on the ground; one that flies is switched off."""
         self._vehicle.close()
         self.mend()
-        self._vehicle.enter_context(vehicle(self.tap.vehicle_port, "--mission", str(self.mission)))
+        options = ("--mission", str(self.mission), *self._vehicle_options)
+        self._vehicle.enter_context(vehicle(self.tap.vehicle_port, *options))
 
     def start_program(self) -> Program:
         """Start the program and the hand; those that run are ended."""

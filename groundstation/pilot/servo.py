@@ -20,6 +20,7 @@ from groundstation.clock import Clock, Every, Pacer
 from groundstation.config import differences
 from groundstation.devices.keeper import ABSENT, DeviceKeeper, Keeper
 from groundstation.devices.making import flight_device
+from groundstation.devices.unpluggable import Unpluggable
 from groundstation.messages import COMMAND, Command, CommandKind, MappingMode, Phase, Severity
 from groundstation.pilot.chooser import (
     CHOOSING,
@@ -51,6 +52,7 @@ from groundstation.pilot.pilot import Memory, Outputs, Pilot
 from groundstation.pilot.realtime import request_realtime
 from groundstation.pilot.sight import ZERO4
 from groundstation.pilot.surroundings import surroundings_of
+from groundstation.pilot.unplugging import Unplugging
 from groundstation.pilot.vehicle_feed import VehicleFeed
 from groundstation.run import Run, read_run, run_file
 
@@ -342,7 +344,9 @@ def body(run: Run, bus: Bus, lifeline: Lifeline) -> None:
         device = flight_device(run.device, run.settings)
     except DeviceError as error:
         raise SystemExit(str(error)) from error
-    servo = Servo(run, bus, DeviceKeeper(device, bus.event, time.monotonic))
+    unpluggable = Unpluggable(device, time.monotonic)
+    unplugging = Unplugging(bus, unpluggable, simulated=run.simulated)
+    servo = Servo(run, bus, DeviceKeeper(unpluggable, bus.event, time.monotonic))
     words = request_realtime()
     if words:
         bus.event(Severity.INFO, words)
@@ -350,12 +354,12 @@ def body(run: Run, bus: Bus, lifeline: Lifeline) -> None:
     gc.freeze()
     gc.disable()
     try:
-        turn(servo, lifeline, realtime=not words)
+        turn(servo, unplugging, lifeline, realtime=not words)
     finally:
         servo.close()
 
 
-def turn(servo: Servo, lifeline: Lifeline, *, realtime: bool) -> None:
+def turn(servo: Servo, unplugging: Unplugging, lifeline: Lifeline, *, realtime: bool) -> None:
     """Keep the servo ticking at its device's rate."""
     rate = servo.rate
     pacer = Pacer(1.0 / rate, spin=SPIN_S if realtime else 0.0)
@@ -363,6 +367,7 @@ def turn(servo: Servo, lifeline: Lifeline, *, realtime: bool) -> None:
     while lifeline.holds():
         late.add(pacer.wait())
         now = time.monotonic()
+        unplugging.turn(now)
         servo.tick(now, pacer.elapsed)
         servo.report(now, late, pacer.missed, realtime=realtime)
         if servo.rate != rate:

@@ -6,6 +6,7 @@ from groundstation.bus import Bus
 from groundstation.console import Snapshot
 from groundstation.messages import HANDLE, MISSION_PROGRESS, PILOT_STATE, VEHICLE_STATE, VEHICLE_STATUS
 from groundstation.training.attempts import Attempts
+from groundstation.training.conducting import Conductor
 from groundstation.training.director import Director
 from groundstation.training.measurer import Measurer
 from groundstation.training.mission import Mission
@@ -33,6 +34,7 @@ class MissionFollower:
         self._statuses = bus.subscriber(VEHICLE_STATUS)
         self._pilots = bus.subscriber(PILOT_STATE)
         self._handles = bus.subscriber(HANDLE)
+        self._conductor = Conductor(mission, bus)
         self._progress = bus.publisher(MISSION_PROGRESS)
 
     @property
@@ -48,6 +50,7 @@ class MissionFollower:
     def look(self, view: Snapshot) -> None:
         """Take note of what is new, and tell the bus how it is going."""
         self._read()
+        self._conductor.look(self.director, view.t)
         self._progress.send(self.director.progress(view.t))
 
     def finish(self) -> None:

@@ -13,6 +13,7 @@ from groundstation.tui import judge
 from groundstation.tui.acts import in_air
 from groundstation.tui.alarms import Condition
 from groundstation.tui.frame import REPORT_STALE_S, STATUS_STALE_S, Frame
+from groundstation.tui.hints import as_told
 from groundstation.tui.notes import from_event
 from groundstation.tui.rows import quantity, span_of_time
 from groundstation.vehicle.profiles import profile_of
@@ -125,4 +126,5 @@ def _said(frame: Frame) -> Iterator[Condition]:
     recent = [from_event(event) for event in frame.snapshot.events[-_RECENT:]]
     for note in [*recent, *frame.notes]:
         if note.severity is not Severity.INFO and frame.now - note.t < _RECENT_S:
-            yield Condition(f"said {_FIGURES.sub('#', note.text)}", note.severity, note.text, note.t)
+            text = as_told(note.text, frame)
+            yield Condition(f"said {_FIGURES.sub('#', text)}", note.severity, text, note.t)

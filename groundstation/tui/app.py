@@ -21,8 +21,10 @@ from textual.screen import ModalScreen, Screen
 from groundstation.console import Snapshot
 from groundstation.messages import CommandKind, FlightMode, Severity
 from groundstation.run import Run
+from groundstation.training.coach import LiveCoach
 from groundstation.training.director import Director
 from groundstation.training.follower import MissionFollower
+from groundstation.training.guide import Guide, guide_of
 from groundstation.tui.acts import ACTS, URGENT, Act, coupled, in_air
 from groundstation.tui.alarms import Alarms
 from groundstation.tui.alerts import conditions
@@ -82,6 +84,7 @@ class FlightApp(Commanding):
         supervisor: Says how the other processes are.
         stick: Takes the on-screen stick's deflection, or None where another device is in use.
         follower: Follows the mission, if there is one.
+        coach: Tells the trainee what to do instead, if there is one.
         clock: Monotonic seconds, the bus's clock.
     """
 
@@ -98,6 +101,7 @@ class FlightApp(Commanding):
         stick: StickSender | None,
         *,
         follower: MissionFollower | None = None,
+        coach: LiveCoach | None = None,
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
         super().__init__(run, console)
@@ -112,7 +116,7 @@ class FlightApp(Commanding):
         self._started = self._snapshot.t
         self._next_poll = self._next_look = 0.0
         self._keepalive = Keepalive(self._send_stick, clock)
-        self._follower = follower
+        self._follower, self._coach = follower, coach
         self._flight = FlightScreen(self.hand if stick is not None else None)
         self._milestones, self._viewer = Milestones(), Viewer()
         self._latest: Frame | None = None
@@ -185,6 +189,10 @@ class FlightApp(Commanding):
         return self._follower.director if self._follower is not None else None
 
     def _frame(self, snapshot: Snapshot) -> Frame:
+        director, guide, coaching = self.director, None, ""
+        if director is not None:
+            guide = guide_of(director, snapshot.t)
+            coaching = self._coached(snapshot, guide, director.clearance)
         return Frame(
             snapshot=snapshot,
             run=self._flight_run,
@@ -196,10 +204,17 @@ class FlightApp(Commanding):
             notes=tuple(self._answers.notes),
             track=self._track,
             history=self._history,
-            figures=self._follower.director.figures if self._follower is not None else None,
+            figures=director.figures if director is not None else None,
+            guide=guide,
+            coaching=coaching,
             alarms=self._alarms,
             paint_hz=self._pace.rate,
         )
+
+    def _coached(self, snapshot: Snapshot, guide: Guide, clearance: float) -> str:
+        if self._coach is None:
+            return ""
+        return self._coach.look(snapshot, guide, clearance, quiet=self._alarms.first() is not None)
 
     def _send_stick(self) -> None:
         if self._stick is not None:

@@ -11,6 +11,7 @@ from groundstation.console import Snapshot
 from groundstation.messages import CommandKind, PilotState, Record
 from groundstation.run import Run
 from groundstation.training.director import Figures
+from groundstation.training.guide import Guide
 from groundstation.tui.acts import PILOT_STALE_S
 from groundstation.tui.alarms import Alarms
 from groundstation.tui.hand import Share4
@@ -60,6 +61,8 @@ class Frame:
         guarded_by: What the guard keeps away from, now or a moment ago, or "".
         notes: What the screen itself has to say, oldest first.
         figures: What the mission has come to so far, or None without one.
+        guide: How far the mission is and what is next, or None without one.
+        coaching: What the trainee does wrong and should do instead, or "".
         alarms: What is wrong, as of the frame before.
         paint_hz: Frames painted a second, as the terminal takes them.
     """
@@ -75,6 +78,8 @@ class Frame:
     track: Track
     history: History
     figures: Figures | None = None
+    guide: Guide | None = None
+    coaching: str = ""
     alarms: Alarms = field(default_factory=Alarms)
     paint_hz: float = math.nan
 

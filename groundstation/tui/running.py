@@ -7,7 +7,9 @@ import sys
 
 from groundstation.bus import Bus
 from groundstation.console import Console
+from groundstation.messages import Severity
 from groundstation.run import Run
+from groundstation.training.coach import LiveCoach
 from groundstation.training.follower import MissionFollower
 from groundstation.tui.app import FlightApp
 from groundstation.tui.frame import Reader, Supervisor
@@ -22,10 +24,12 @@ def run_screen(
     console: Reader,
     supervisor: Supervisor,
     stick: StickSender | None,
+    *,
     follower: MissionFollower | None = None,
+    coach: LiveCoach | None = None,
 ) -> int:
     """Show the screen until the operator leaves; return the exit code."""
-    app = FlightApp(run, console, supervisor, stick, follower=follower)
+    app = FlightApp(run, console, supervisor, stick, follower=follower, coach=coach)
     # A collection that looks through all the modules again takes 0.2 s, and a stick is stale after 0.1 s.
     gc.collect()
     gc.freeze()
@@ -48,7 +52,8 @@ def fly_on_screen(run: Run, bus: Bus, supervisor: Supervisor) -> int:
     stick = Sender(str(run.hand)) if run.hand else None
     try:
         follower = MissionFollower(run.mission, bus) if run.mission else None
-        return run_screen(run, Console(bus, "screen"), supervisor, stick, follower)
+        coach = LiveCoach(run, lambda words: bus.event(Severity.INFO, words))
+        return run_screen(run, Console(bus, "screen"), supervisor, stick, follower=follower, coach=coach)
     finally:
         if stick is not None:
             stick.close()

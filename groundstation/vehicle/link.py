@@ -11,6 +11,7 @@ import queue
 import threading
 import time
 from collections import deque
+from pathlib import Path
 
 import mavsdk
 from mavsdk import Configuration, Mavsdk, System
@@ -18,6 +19,7 @@ from mavsdk import Configuration, Mavsdk, System
 from groundstation.bus import Bus
 from groundstation.child import Lifeline, run_child
 from groundstation.conditions import Conditions
+from groundstation.errors import InputError
 from groundstation.failsafe import BY_FAULT, Fault
 from groundstation.frames import Vector4
 from groundstation.messages import (
@@ -44,15 +46,17 @@ from groundstation.vehicle.asleep import Sleep
 from groundstation.vehicle.commander import STEERING, Answer, Commander
 from groundstation.vehicle.gate import Gate
 from groundstation.vehicle.identity import Identity
+from groundstation.vehicle.interventions import Interventions
 from groundstation.vehicle.obstacle_view import ObstacleView
 from groundstation.vehicle.offboard import Act, OffboardStream, Seen
 from groundstation.vehicle.parameter_desk import PARAMETER_COMMANDS, ParameterDesk
 from groundstation.vehicle.profiles import profile_of
 from groundstation.vehicle.pump import Pump
 from groundstation.vehicle.round_trip import RoundTrip
+from groundstation.vehicle.signing import Refusals, Signing, read_key
 from groundstation.vehicle.telemetry import Notes, VehicleView
 from groundstation.vehicle.tlog import TlogWriter
-from groundstation.vehicle.transport import TransportError, UrlError, open_transport, parse_url
+from groundstation.vehicle.transport import TransportError, open_transport, parse_url
 
 ROLE = "link"
 # MAV_COMP_ID_MISSIONPLANNER: the ground station's usual component, with the usual GCS system id.
@@ -114,11 +118,13 @@ class Link:
         self._obstacles: ObstacleView | None = None
         self._desk: ParameterDesk | None = None
         self._identity: Identity | None = None
+        self._interventions = Interventions(bus, simulated=run.simulated)
         self._given = 0
         self._denials: deque[tuple[float, str]] = deque(maxlen=4)
         self._next_status = 0.0
         self._next_discovery = 0.0
         self._silent = False
+        self._refusals = Refusals()
 
     def turn(self) -> None:
         """Pass records once around; never waits."""
@@ -135,6 +141,7 @@ class Link:
             self._identity.turn()
         for command in self._commands.drain():
             self._obey(command, now)
+        self._interventions.turn(now)
         self._pass_on_sights()
         if self._desk:
             for answer in self._desk.pass_on(now, self._view.boots):
@@ -157,7 +164,8 @@ class Link:
 
     def close(self) -> bool:
         """End what waits for the vehicle; say whether MAVSDK may be taken away now."""
-        return self._desk is None or self._desk.close()
+        freed = self._interventions.close()
+        return (self._desk is None or self._desk.close()) and freed
 
     def _wake(self) -> None:
         """After a sleep nothing that was being flown goes on, however young the monotonic clock says it is."""
@@ -186,6 +194,7 @@ class Link:
         self._obstacles = ObstacleView(system, self._view.yaw, self._notes, time.monotonic)
         self._desk = ParameterDesk(self._bus, system, self._gate, profile)
         self._identity = Identity(system, time.monotonic)
+        self._interventions.attach(system, self._gate, lambda: time.monotonic() - self._pump.heard_t)
         self._view.attach(system, self._run.settings.rates.telemetry)
         self._status.system_id, self._status.autopilot = system.get_system_id(), system.autopilot_type()
         kind = profile.label if profile else "unknown autopilot"
@@ -317,6 +326,8 @@ class Link:
             status.firmware = fit(self._identity.firmware, FIRMWARE_TEXT)
         self._statuses.send(status)
         self._watch_silence(now)
+        if words := self._refusals.news(now, self._pump.refused, heard=bool(self._pump.heard_t)):
+            self._bus.event(Severity.WARNING, words)
 
     def _watch_silence(self, now: float) -> None:
         seen = Conditions(silence=now - self._pump.heard_t if self._pump.heard_t else 0.0)
@@ -337,8 +348,9 @@ def body(run: Run, bus: Bus, lifeline: Lifeline) -> None:
         lambda level, text, _file, _line: _note_log(notes, int(level), text) if connected.is_set() else True
     )
     try:
+        signing = Signing(read_key(Path(run.signing_key)), time.time) if run.signing_key else None
         transport = open_transport(parse_url(run.url), lambda severity, words: notes.put((severity, words)))
-    except (UrlError, TransportError) as error:
+    except (InputError, TransportError) as error:
         raise SystemExit(str(error)) from error
     sleep = Sleep()
     gate = Gate(
@@ -347,7 +359,7 @@ def body(run: Run, bus: Bus, lifeline: Lifeline) -> None:
         lambda words: notes.put((Severity.WARNING, words)),
     )
     tlog = _open_tlog(run, notes)
-    pump = Pump(transport, gate, tlog, time.monotonic)
+    pump = Pump(transport, gate, tlog, time.monotonic, signing)
     mav = Mavsdk(Configuration.create_manual(_SYSTEM_ID, _COMPONENT_ID, always_send_heartbeats=True))
     pump.start(mav)
     connected.set()
@@ -376,8 +388,11 @@ def _open_tlog(run: Run, notes: Notes) -> TlogWriter | None:
 
 
 def _note_log(notes: Notes, level: int, text: str) -> bool:
-    """Keep MAVSDK's own lines off the terminal; its warnings become events."""
-    if level >= int(mavsdk.LogLevel.WARN):
+    """Keep MAVSDK's own lines off the terminal; its warnings become events.
+
+    Not those of the simulator's parameters: whose they are the trainee would not learn from a real vehicle.
+    """
+    if level >= int(mavsdk.LogLevel.WARN) and "(SIM_" not in text:
         notes.put((Severity.WARNING, f"MAVSDK: {text}"))
     return True
 

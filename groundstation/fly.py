@@ -44,7 +44,8 @@ def fly(asked: argparse.Namespace) -> int:
         if asked.headless:
             from groundstation.headless import fly_headless
 
-            return fly_headless(run, bus, supervisor, as_json=asked.json, seed=asked.seed)
+            operator = asked.operator or "average"
+            return fly_headless(run, bus, supervisor, as_json=asked.json, operator=operator, seed=asked.seed)
         if asked.plain:
             from groundstation.tui.plain import fly_plainly
 
@@ -122,6 +123,8 @@ def _check(asked: argparse.Namespace) -> None:
         raise InputError(
             "--headless flies with the scripted hand; leave --device out, or give it a double: emulated:falcon."
         )
+    if asked.operator and not asked.headless:
+        raise InputError("--operator says who flies a --headless flight; add --headless.")
     if asked.json and not asked.headless:
         raise InputError("--json is the summary of a --headless flight; add --headless.")
     if asked.headless and asked.connect and not asked.confirm_real:

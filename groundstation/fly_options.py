@@ -51,6 +51,11 @@ def add_flight(parser: argparse.ArgumentParser) -> None:
         "--headless", action="store_true", help="no screen: the scripted hand flies the mission"
     )
     flight.add_argument(
+        "--operator",
+        choices=("novice", "average", "expert"),
+        help="with --headless: who flies, see docs/scoring.md (default: average)",
+    )
+    flight.add_argument(
         "--plain",
         action="store_true",
         help="no screen: a line of status a second, commands as words from stdin (for screen readers and logs)",

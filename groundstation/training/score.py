@@ -21,6 +21,8 @@ ROOMY_M = 0.5
 UNHURRIED = 0.5
 # The unit of what is a share of the whole.
 SHARE = "share"
+# What the missing part of an unfinished mission costs, beside the parts.
+UNFINISHED = "unfinished"
 NO_PAR = "what is usual: nobody has flown this mission for reference"
 
 
@@ -208,7 +210,7 @@ def measure(value: float, unit: str) -> str:
         return "not known"
     if unit == SHARE:
         return f"{value:.0%} missed"
-    return f"{value:.3g} {unit}".rstrip()
+    return f"{value:.3g} {unit}".rstrip().replace("-", "−")
 
 
 def _side(yard: Yardstick) -> str:

@@ -11,6 +11,8 @@ from groundstation.console import Snapshot
 from groundstation.messages import CommandKind, PilotState, Record
 from groundstation.run import Run
 from groundstation.training.director import Figures
+from groundstation.training.judgement import Judgement
+from groundstation.training.score import Score
 from groundstation.tui.acts import PILOT_STALE_S
 from groundstation.tui.alarms import Alarms
 from groundstation.tui.hand import Share4
@@ -60,6 +62,8 @@ class Frame:
         guarded_by: What the guard keeps away from, now or a moment ago, or "".
         notes: What the screen itself has to say, oldest first.
         figures: What the mission has come to so far, or None without one.
+        score: What that is worth so far, as of a second ago; None where there is nothing to be judged by.
+        judgement: Of the last flight that landed, or None before.
         alarms: What is wrong, as of the frame before.
         paint_hz: Frames painted a second, as the terminal takes them.
     """
@@ -75,6 +79,8 @@ class Frame:
     track: Track
     history: History
     figures: Figures | None = None
+    score: Score | None = None
+    judgement: Judgement | None = None
     alarms: Alarms = field(default_factory=Alarms)
     paint_hz: float = math.nan
 

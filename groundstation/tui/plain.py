@@ -253,7 +253,7 @@ def fly_plainly(run: Run, bus: Bus, supervisor: Supervisor) -> int:
     from drivers.stick import StickSender as Sender
 
     stick = Sender(str(run.hand)) if run.hand else None
-    follower = MissionFollower(run.mission, bus) if run.mission else None
+    follower = MissionFollower(run.mission, bus, run.par) if run.mission else None
     hand = Hand() if stick is not None else None
     flight = PlainFlight(run, Console(bus, "plain"), supervisor, _print, hand)
     keepalive = Keepalive(lambda: _send_stick(stick, hand, flight)) if stick is not None else None

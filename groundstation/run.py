@@ -38,6 +38,7 @@ class Run(Struct, frozen=True):
         config: The settings file, or "" where they are the defaults.
         par: What the flight is held against; None where nobody has flown the mission for reference.
         par_from: Whose it is, in words, or "".
+        signing_key: The file with the key for MAVLink signing, or "". The key itself is nowhere but there.
     """
 
     run_id: str
@@ -57,6 +58,7 @@ class Run(Struct, frozen=True):
     config: str = ""
     par: Measures | None = None
     par_from: str = ""
+    signing_key: str = ""
 
     @property
     def hand(self) -> Path | None:

@@ -13,6 +13,7 @@ from groundstation.config import Settings
 from groundstation.console import Snapshot
 from groundstation.frames import body_from_world, wrap
 from groundstation.messages import (
+    Autopilot,
     CommandAnswer,
     CommandKind,
     DeviceReport,
@@ -138,7 +139,7 @@ class CannedFlight:
             pilot=self._pilot(t, error),
             vehicle=VehicleState(
                 t=t - 0.012, position=tuple(self._p), velocity=tuple(self._v), roll=-0.1 * left, pitch=0.1 * ahead,
-                boot_t=self.elapsed, valid=1,
+                boot_t=60.0 + self.elapsed, valid=1,
             ),
             ranges=None,
             status=self._status(t),
@@ -246,6 +247,10 @@ class CannedFlight:
             sent=int(50 * max(self.elapsed - ENGAGED_S, 0)),
             health=127,
             system_id=1,
+            component=1,
+            autopilot=Autopilot.PX4,
+            firmware=b"1.15.4",
+            speed_limits=(12.0, 3.0, 1.5),
             connected=1,
             armed=self.elapsed > 0.5,
             in_air=flying,

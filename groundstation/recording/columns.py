@@ -236,6 +236,7 @@ _RARE: tuple[tuple[Topic[Any], Quantity, Callable[[Rows], Numbers]], ...] = (
     (VEHICLE_STATUS, schema.SYSTEM_ID, _fields("system_id")),
     (SERVO_REPORT, schema.REALTIME, _fields("realtime")),
     (VEHICLE_STATUS, schema.STATUS, _fields("connected", "armed", "in_air", "mode", "streaming")),
+    (VEHICLE_STATUS, schema.SPEED_LIMITS, _fields("speed_limits")),
     (DEVICE_REPORT, schema.LIMITS, _fields("axes", "workspace", "force_limit", "stiffness_limit", "rate")),
 )
 

@@ -201,6 +201,13 @@ ANSWERED = Quantity(
     "as given",
     "Answers: of which command, its `CommandKind`, and 1 where it was done, 0 where refused",
 )
+SPEED_LIMITS = Quantity(
+    "/vehicle/speed_limits",
+    ("around", "up", "down"),
+    "m/s",
+    "on change",
+    "Largest speeds that the vehicle allows; 0 is not known",
+)
 SYSTEM_ID = Quantity(
     "/vehicle/system_id", ("system id",), "count", "on change", "The vehicle's own in MAVLink"
 )
@@ -308,7 +315,7 @@ QUANTITIES: tuple[Quantity, ...] = (
     PREDICTED, PREDICTED_VELOCITY, STOP, PUSH,
     *REFERENCES, *EXECUTED,
     POSITION, VELOCITY, UNTRUSTED, ATTITUDE, RAW_ATTITUDE, RAW_RATES, SYSTEM_ID, BOOT_TIME,
-    BATTERY, VOLTAGE, HEALTH_BITS, STATUS,
+    BATTERY, VOLTAGE, HEALTH_BITS, STATUS, SPEED_LIMITS,
     RING, RANGES, RANGE_LIMIT,
     STATE_AGE, HANDLE_AGE, ROUND_TRIP, RECKONED, SILENCE,
     LOSS, GATE,

@@ -6,6 +6,8 @@ import threading
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
+from groundstation.conditions import Conditions
+from groundstation.failsafe import BY_FAULT, Fault
 from groundstation.messages import DEVICE_REPORT, Severity
 from groundstation.recording.about import about_device, about_flight
 from groundstation.recording.batch import Batch
@@ -29,6 +31,7 @@ from groundstation.run import Run
 Tell = Callable[[Severity, str], None]
 
 _MB = 1e6
+_DISK_LOW = BY_FAULT[Fault.DISK_LOW]
 # Of a record all but its time.
 _AFTER_TIME = 8
 
@@ -138,12 +141,10 @@ class Session:
             self._open(part_path(self._first, self._parts))
             self._write(list(self._translator.opening()))
         left = left_gb(file.path.parent)
-        if left < self._limits.warn_gb and not self._told_full:
+        c = Conditions(disk_gb=left, disk_least_gb=self._limits.warn_gb)
+        if _DISK_LOW.holds(c, self._run.settings.safety) and not self._told_full:
             self._told_full = True
-            self._tell(
-                Severity.WARNING,
-                f"The disk of {file.path.parent} has {left:.1f} GB left; make room after this flight.",
-            )
+            self._tell(_DISK_LOW.severity, f"The disk of {file.path.parent} has {_DISK_LOW.say(c)}.")
 
     def _end(self, file: FlightFile) -> None:
         """End a file and put it in order."""

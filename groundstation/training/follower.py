@@ -19,6 +19,7 @@ from groundstation.messages import (
     fit,
 )
 from groundstation.training.attempts import Attempts
+from groundstation.training.conducting import Conductor
 from groundstation.training.director import Director
 from groundstation.training.judgement import Judgement, judgement_of
 from groundstation.training.measurer import HandSight, Measurer, VehicleSight
@@ -53,6 +54,7 @@ class MissionFollower:
         self._statuses = bus.subscriber(VEHICLE_STATUS)
         self._pilots = bus.subscriber(PILOT_STATE)
         self._handles = bus.subscriber(HANDLE)
+        self._conductor = Conductor(mission, bus)
         self._progress = bus.publisher(MISSION_PROGRESS)
         self._losses = bus.publisher(POINTS_LOST)
 
@@ -69,6 +71,7 @@ class MissionFollower:
     def look(self, view: Snapshot) -> None:
         """Take note of what is new, and tell the bus how it is going."""
         self._read()
+        self._conductor.look(self.director, view.t)
         self._progress.send(self.director.progress(view.t))
 
     def finish(self) -> None:

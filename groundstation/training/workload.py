@@ -49,7 +49,7 @@ class Workload(Struct, frozen=True):
     frustration: int = MIDDLE
 
     @property
-    def total(self) -> float:
+    def raw(self) -> float:
         """The raw index: the mean of the six, 0 to 100."""
         return sum(getattr(self, scale.name) for scale in SCALES) / len(SCALES)
 
@@ -57,7 +57,7 @@ class Workload(Struct, frozen=True):
     def words(self) -> str:
         """All of it in a line."""
         answers = ", ".join(f"{scale.name} {getattr(self, scale.name)}" for scale in SCALES)
-        return f"Workload (raw NASA-TLX) {self.total:.0f} of 100: {answers}."
+        return f"Workload (raw NASA-TLX) {self.raw:.0f} of 100: {answers}."
 
 
 def moved(value: int, steps: int) -> int:

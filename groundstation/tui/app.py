@@ -22,8 +22,10 @@ from textual.screen import ModalScreen, Screen
 from groundstation.console import Snapshot
 from groundstation.messages import CommandKind, FlightMode, Severity
 from groundstation.run import Run, start_of
+from groundstation.training.coach import LiveCoach
 from groundstation.training.director import Director
 from groundstation.training.follower import MissionFollower
+from groundstation.training.guide import Guide, guide_of
 from groundstation.training.score import Score, score_of
 from groundstation.training.workload import Workload
 from groundstation.tui.acts import ACTS, URGENT, Act, coupled, in_air
@@ -86,6 +88,7 @@ class FlightApp(Commanding):
         supervisor: Says how the other processes are.
         stick: Takes the on-screen stick's deflection, or None where another device is in use.
         follower: Follows the mission, if there is one.
+        coach: Tells the trainee what to do instead, if there is one.
         best: The pilot's best score in this mission before; None where there is none.
         on_workload: Keeps what was answered after a flight.
         clock: Monotonic seconds, the bus's clock.
@@ -104,6 +107,7 @@ class FlightApp(Commanding):
         stick: StickSender | None,
         *,
         follower: MissionFollower | None = None,
+        coach: LiveCoach | None = None,
         best: Score | None = None,
         on_workload: Callable[[Workload], None] = lambda _: None,
         clock: Callable[[], float] = time.monotonic,
@@ -121,7 +125,7 @@ class FlightApp(Commanding):
         self._start = start_of(run.started, datetime.datetime.now().astimezone(), clock())
         self._next_poll = self._next_look = self._next_score = 0.0
         self._keepalive = Keepalive(self._send_stick, clock)
-        self._follower = follower
+        self._follower, self._coach = follower, coach
         self.best, self._on_workload = best, on_workload
         self._score: Score | None = None
         self._flight = FlightScreen(self.hand if stick is not None else None)
@@ -204,6 +208,10 @@ class FlightApp(Commanding):
         return self._follower.director if self._follower is not None else None
 
     def _frame(self, snapshot: Snapshot) -> Frame:
+        director, guide, coaching = self.director, None, ""
+        if director is not None:
+            guide = guide_of(director, snapshot.t)
+            coaching = self._coached(snapshot, guide, director.clearance)
         return Frame(
             snapshot=snapshot,
             run=self._flight_run,
@@ -215,12 +223,19 @@ class FlightApp(Commanding):
             notes=tuple(self._answers.notes),
             track=self._track,
             history=self._history,
-            figures=self._follower.director.figures if self._follower is not None else None,
+            figures=director.figures if director is not None else None,
             score=self._score,
             judgement=self._follower.judgement if self._follower is not None else None,
+            guide=guide,
+            coaching=coaching,
             alarms=self._alarms,
             paint_hz=self._pace.rate,
         )
+
+    def _coached(self, snapshot: Snapshot, guide: Guide, clearance: float) -> str:
+        if self._coach is None:
+            return ""
+        return self._coach.look(snapshot, guide, clearance, quiet=self._alarms.first() is not None)
 
     def _send_stick(self) -> None:
         if self._stick is not None:
@@ -264,7 +279,7 @@ class FlightApp(Commanding):
         """Keep how hard it was, unless that was not said."""
         if workload is not None:
             self._on_workload(workload)
-            self.notify(f"Kept: workload {workload.total:.0f} of 100.", timeout=3.0)
+            self.notify(f"Kept: workload {workload.raw:.0f} of 100.", timeout=3.0)
 
     def action_review(self, at: float | None = None) -> None:
         """Open the recording in the viewer, at a time of the recording, s, or at its beginning."""

@@ -10,6 +10,7 @@ from groundstation.bus import Bus
 from groundstation.console import Console
 from groundstation.messages import Severity
 from groundstation.run import Run
+from groundstation.training.coach import LiveCoach
 from groundstation.training.follower import MissionFollower
 from groundstation.training.workload import Workload
 from groundstation.tui.app import FlightApp
@@ -25,12 +26,13 @@ def run_screen(
     console: Reader,
     supervisor: Supervisor,
     stick: StickSender | None,
-    follower: MissionFollower | None = None,
     *,
+    follower: MissionFollower | None = None,
+    coach: LiveCoach | None = None,
     on_workload: Callable[[Workload], None] = lambda _: None,
 ) -> int:
     """Show the screen until the operator leaves; return the exit code."""
-    app = FlightApp(run, console, supervisor, stick, follower=follower, on_workload=on_workload)
+    app = FlightApp(run, console, supervisor, stick, follower=follower, coach=coach, on_workload=on_workload)
     # A collection that looks through all the modules again takes 0.2 s, and a stick is stale after 0.1 s.
     gc.collect()
     gc.freeze()
@@ -58,7 +60,8 @@ def fly_on_screen(run: Run, bus: Bus, supervisor: Supervisor) -> int:
             Console(bus, "screen"),
             supervisor,
             stick,
-            follower,
+            follower=follower,
+            coach=LiveCoach(run, lambda words: bus.event(Severity.INFO, words)),
             # As an event it stands in the recording.
             on_workload=lambda workload: bus.event(Severity.INFO, workload.words),
         )

@@ -1,10 +1,11 @@
-"""How the mission is going: what it asks for, how far it is, its clock, and the score so far with its parts."""
+"""How the mission is going: what it asks for next, how far it is, its clock, and the score so far with its parts."""
 
 from __future__ import annotations
 
 import math
 
 from groundstation.training.mission import Mission as MissionFile
+from groundstation.tui.directions import title, way_of, whereabouts
 from groundstation.tui.frame import Frame
 from groundstation.tui.notes import words
 from groundstation.tui.rows import UNKNOWN, Row, clock, gauge, quantity, width_of
@@ -33,12 +34,29 @@ class Mission(Instrument):
         if mission is None:
             return [[(" free flight: nothing is asked for", Tone.MUTED)]]
         rows = [_row("mission", (mission.title[: max(width - _LABEL - 2, 0)], Tone.TEXT))]
+        rows += _next(frame, width)
         rows += _progress(frame, mission, width)
         return [*rows, *_score(frame, width)][:height]
 
 
 def _row(label: str, *parts: tuple[str, Tone]) -> Row:
     return [(f" {label:<{_LABEL - 1}}", Tone.MUTED), *parts]
+
+
+def _next(frame: Frame, width: int) -> list[Row]:
+    """Return what is to be reached next, where it is, and while it is stayed at how long has been."""
+    guide, way = frame.guide, way_of(frame)
+    if guide is None or way is None:
+        return []
+    rows = [
+        _row("next", (title(guide)[: max(width - _LABEL - 2, 0)], Tone.TARGET)),
+        _row("", (whereabouts(guide, way)[: max(width - _LABEL - 2, 0)], Tone.STRONG)),
+    ]
+    if guide.held_s > 0.0 and guide.hold_s:
+        head, figure = _row("stay"), f" {guide.held_s:.1f} of {guide.hold_s:g} s"
+        room = width - width_of(head) - len(figure) - 1
+        rows.append([*head, *gauge(guide.held_s, guide.hold_s, room, Tone.OK, Tone.OK), (figure, Tone.TEXT)])
+    return rows
 
 
 def _progress(frame: Frame, mission: MissionFile, width: int) -> list[Row]:

@@ -56,7 +56,7 @@ def blueprint(mission: Mission | None) -> rrb.Blueprint:
         rrb.Vertical(
             rrb.Horizontal(left, right, column_shares=[5, 6]),
             _states("What happened", *_HAPPENED),
-            row_shares=[20, 9],
+            row_shares=[20, 10],
         ),
         rrb.BlueprintPanel(state="collapsed"),
         rrb.SelectionPanel(state="collapsed"),

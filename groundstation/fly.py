@@ -23,6 +23,8 @@ from groundstation.run import Run
 from groundstation.run_folder import new_run_id, run_folder, sweep_dead_runs
 from groundstation.terminal import has_screen, terminal_path
 from groundstation.training.mission import Mission, find_mission, load_mission
+from groundstation.training.par import par_in
+from groundstation.training.reference import load_reference
 from groundstation.vehicle.signing import read_key
 from groundstation.vehicle.transport import parse_url
 from sim.scenario import VehicleChoice
@@ -91,6 +93,7 @@ def plan(asked: argparse.Namespace) -> Run:
     now = datetime.datetime.now().astimezone()
     run_id = new_run_id()
     device = _device(asked, run_id)
+    par, par_from = par_in(load_reference(mission, path) if mission and path else None, asked.seed)
     if asked.device:
         _check_device(device, settings)
     return Run(
@@ -112,6 +115,8 @@ def plan(asked: argparse.Namespace) -> Run:
         if asked.config or usual_file()
         else "",
         signing_key=str(asked.signing_key.resolve()) if asked.signing_key else "",
+        par=par,
+        par_from=par_from,
     )
 
 

@@ -21,6 +21,7 @@ from groundstation.errors import InputError
 from groundstation.messages import CommandAnswer, CommandKind, Health, Phase
 from groundstation.pilot.mapping import RateMapping
 from groundstation.processes import Supervisor
+from groundstation.progress.keeper import Keeper
 from groundstation.run import Run
 from groundstation.training.director import Director, Stage
 from groundstation.training.follower import MissionFollower
@@ -274,6 +275,8 @@ def fly_headless(run: Run, bus: Bus, supervisor: Supervisor, *, as_json: bool, s
     view = outing.fly(flight, hand)
     supervisor.stop()
     outing.follower.finish()
+    for words in Keeper(run, outing.follower.attempts).close():
+        sys.stderr.write(f"groundstation: {words}\n")
     return summarise(run, outing.follower.measurer, view.servo, flight.failure, as_json=as_json)
 
 

@@ -28,6 +28,8 @@ BENCHES = {
     "evaluate": "how many times as fast as real time flights are evaluated",
     "recording": "what recording costs: share of a core, MB a minute, rows lost",
     "killed": "what a recording misses after a process of the flight was killed",
+    "soak": "the whole program for half an hour with random faults: what dies, grows, falls behind",
+    "reconnect": "a thousand times connected and cut off: what memory and descriptors the link keeps",
     "report": "report on a flight of ten minutes, and loading it",
     "identify": "how exactly χ comes back out of noisy flights of every preset",
     "shield": "full-stick adversaries through obstacle fields, with and without the guard",

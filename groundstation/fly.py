@@ -23,6 +23,9 @@ from groundstation.run import Run
 from groundstation.run_folder import new_run_id, run_folder, sweep_dead_runs
 from groundstation.terminal import has_screen, terminal_path
 from groundstation.training.mission import Mission, find_mission, load_mission
+from groundstation.training.par import par_in
+from groundstation.training.reference import load_reference
+from groundstation.vehicle.signing import read_key
 from groundstation.vehicle.transport import parse_url
 from sim.scenario import VehicleChoice
 
@@ -84,9 +87,12 @@ def plan(asked: argparse.Namespace) -> Run:
     _check_controller(asked.controller, settings)
     url = asked.connect or f"udpin://127.0.0.1:{free_port()}"
     parse_url(url)
+    if asked.signing_key:
+        read_key(asked.signing_key)
     now = datetime.datetime.now().astimezone()
     run_id = new_run_id()
     device = _device(asked, run_id)
+    par, par_from = par_in(load_reference(mission, path) if mission and path else None, asked.seed)
     if asked.device:
         _check_device(device, settings)
     return Run(
@@ -107,6 +113,9 @@ def plan(asked: argparse.Namespace) -> Run:
         config=str((asked.config or usual_file() or Path()).resolve())
         if asked.config or usual_file()
         else "",
+        signing_key=str(asked.signing_key.resolve()) if asked.signing_key else "",
+        par=par,
+        par_from=par_from,
     )
 
 
@@ -215,6 +224,8 @@ def _sim_options(asked: argparse.Namespace) -> tuple[str, ...]:
         options += ["--model", asked.model]
     if asked.channel:
         options += ["--channel", asked.channel]
+    if asked.signing_key:
+        options += ["--signing-key", str(asked.signing_key)]
     return tuple(options)
 
 

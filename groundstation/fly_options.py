@@ -16,12 +16,19 @@ def fill(parser: argparse.ArgumentParser) -> None:
 
 def add_vehicle(parser: argparse.ArgumentParser) -> None:
     """Add which vehicle is flown."""
-    vehicle = parser.add_argument_group("vehicle (one of)").add_mutually_exclusive_group()
+    group = parser.add_argument_group("vehicle (--sim or --connect)")
+    vehicle = group.add_mutually_exclusive_group()
     vehicle.add_argument("--sim", action="store_true", help="start and fly a simulated vehicle")
     vehicle.add_argument(
         "--connect",
         metavar="URL",
         help="fly the vehicle at udpin://HOST:PORT, udpout://HOST:PORT, tcpout://HOST:PORT or serial://PORT:BAUD",
+    )
+    group.add_argument(
+        "--signing-key",
+        type=Path,
+        metavar="FILE",
+        help="sign, and hear only who signs (MAVLink 2): 32 bytes, or a passphrase, readable by you alone",
     )
 
 

@@ -298,7 +298,7 @@ class Outing:
     def __init__(self, run: Run, mission: Mission, bus: Bus, supervisor: Supervisor) -> None:
         self._bus, self._supervisor = bus, supervisor
         self._console = Console(bus, "headless")
-        self.follower = MissionFollower(mission, bus)
+        self.follower = MissionFollower(mission, bus, run.par)
         self.director = self.follower.director
         self.sender = StickSender(str(run.hand))
 

@@ -23,7 +23,10 @@ EVENT_TEXT = 240
 ANSWER_TEXT = 200
 REASON_TEXT = 160
 NAME_TEXT = 49
+FIRMWARE_TEXT = 24
 PARAMETER_TEXT = 17
+PART_TEXT = 16
+HAPPENING_TEXT = 200
 # Sectors of the ring in `Ranges`, as many as MAVLink's OBSTACLE_DISTANCE has room for.
 RING_SECTORS = 72
 
@@ -71,6 +74,14 @@ class Stream(IntEnum):
     STARTING = 1
     FLYING = 2
     ENDED = 3
+
+
+class Autopilot(IntEnum):
+    """What flies the vehicle, as its heartbeat says."""
+
+    UNKNOWN = 0
+    PX4 = 1
+    ARDUPILOT = 2
 
 
 class CommandKind(IntEnum):
@@ -412,10 +423,14 @@ class VehicleStatus(Record):
         heard_t: When the last frame of the vehicle came, s; 0 before the first.
         loss: Share of the vehicle's frames lost in the last seconds, 0 to 1.
         rtt: Round trip by TIMESYNC, s; NaN before the first answer.
+        speed_limits: Largest speeds that the vehicle allows, m/s: around, up, down; 0 where not known.
         sent: Setpoint frames that left.
-        dropped: Setpoint frames the gate kept back.
+        dropped: Frames the gate kept back: stale setpoints, and what is not on its list.
         streaming: State of the setpoint stream, a `Stream`; FLYING only once the vehicle has confirmed offboard
             for this very stream.
+        autopilot: An `Autopilot`.
+        component: Of the autopilot in MAVLink; 0 until it has told its version.
+        firmware: That version, or "".
         unsafe: Why its own failsafes keep the hand from being coupled, or "".
     """
 
@@ -424,6 +439,7 @@ class VehicleStatus(Record):
     rtt: float
     battery: float
     voltage: float
+    speed_limits: ctypes.Array[_F64]
     sent: int
     dropped: int
     health: int
@@ -433,6 +449,9 @@ class VehicleStatus(Record):
     in_air: int
     mode: int
     streaming: int
+    autopilot: int
+    component: int
+    firmware: bytes
     unsafe: bytes
     _fields_ = (
         ("t", _F64),
@@ -441,6 +460,7 @@ class VehicleStatus(Record):
         ("rtt", _F64),
         ("battery", _F64),
         ("voltage", _F64),
+        ("speed_limits", _F64 * 3),
         ("sent", _U64),
         ("dropped", _U64),
         ("health", _U32),
@@ -450,6 +470,9 @@ class VehicleStatus(Record):
         ("in_air", _U8),
         ("mode", _U8),
         ("streaming", _U8),
+        ("autopilot", _U8),
+        ("component", _U8),
+        ("firmware", ctypes.c_char * FIRMWARE_TEXT),
         ("unsafe", ctypes.c_char * REASON_TEXT),
     )
 
@@ -512,6 +535,48 @@ class CommandAnswer(Record):
         ("number", _U64),
         ("kind", _U8),
         ("ok", _U8),
+        ("text", ctypes.c_char * ANSWER_TEXT),
+    )
+
+
+class Intervention(Record):
+    """An instructor, or a mission's timetable, wants something to happen to the flight.
+
+    Attributes:
+        number: Distinguishes it from all others of the run; its `InterventionAnswer` has the same.
+        source: Who wants it, as in "instructor" or "mission".
+        happening: What, as `groundstation.training.happening.packed` gives it.
+    """
+
+    number: int
+    source: bytes
+    happening: bytes
+    _fields_ = (
+        ("t", _F64),
+        ("number", _U64),
+        ("source", ctypes.c_char * 16),
+        ("happening", ctypes.c_char * HAPPENING_TEXT),
+    )
+
+
+class InterventionAnswer(Record):
+    """What became of an `Intervention`, which it repeats: who comes late gets to know what has been done.
+
+    Attributes:
+        ok: It was done; else `text` says why not.
+    """
+
+    number: int
+    ok: int
+    source: bytes
+    happening: bytes
+    text: bytes
+    _fields_ = (
+        ("t", _F64),
+        ("number", _U64),
+        ("ok", _U8),
+        ("source", ctypes.c_char * 16),
+        ("happening", ctypes.c_char * HAPPENING_TEXT),
         ("text", ctypes.c_char * ANSWER_TEXT),
     )
 
@@ -619,6 +684,32 @@ class MissionProgress(Record):
     )
 
 
+class PointsLost(Record):
+    """A moment in which a flight lost points, told when it has landed (`t` is that of the moment).
+
+    Attributes:
+        until: When it ended, s.
+        points: Of the score's 100.
+        position: Where the vehicle was, world, m.
+        part: Of the score.
+        text: What happened.
+    """
+
+    until: float
+    points: float
+    position: ctypes.Array[_F64]
+    part: bytes
+    text: bytes
+    _fields_ = (
+        ("t", _F64),
+        ("until", _F64),
+        ("points", _F64),
+        ("position", _F64 * 3),
+        ("part", ctypes.c_char * PART_TEXT),
+        ("text", ctypes.c_char * EVENT_TEXT),
+    )
+
+
 class Heartbeat(Record):
     """A process is alive and its loop turns, 10 Hz."""
 
@@ -661,10 +752,13 @@ PARAMETER = Topic("parameter", Parameter, depth=4096, history=0)
 OBSTACLES = Topic("obstacles", Ranges, history=32)
 COMMAND = Topic("command", Command, history=0)
 COMMAND_ANSWER = Topic("command_answer", CommandAnswer, history=0)
+INTERVENTION = Topic("intervention", Intervention, history=0)
+INTERVENTION_ANSWER = Topic("intervention_answer", InterventionAnswer, depth=128, history=64)
 EVENT = Topic("event", Event, depth=256, history=32)
 SERVO_REPORT = Topic("servo_report", ServoReport)
 DEVICE_REPORT = Topic("device_report", DeviceReport, history=16)
 MISSION_PROGRESS = Topic("mission_progress", MissionProgress)
+POINTS_LOST = Topic("points_lost", PointsLost, history=0)
 HEARTBEAT = Topic("heartbeat", Heartbeat, history=0)
 
 

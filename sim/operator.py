@@ -50,6 +50,9 @@ class Person:
         face_along: Turn the vehicle's front along the route; else yaw is left alone.
         turn_gain: Yaw rate a radian of yaw error, 1/s.
         turn_rate: Largest yaw rate wished, rad/s.
+        recovers: After a coupling was lost and could be had again, so long until it is asked for, s.
+        arm_mass: Of hand and handle, kg.
+        arm_stiffness: Of the arm that holds the handle, N/m.
     """
 
     cruise: float = 1.2
@@ -68,6 +71,9 @@ class Person:
     face_along: bool = False
     turn_gain: float = 1.0
     turn_rate: float = 0.5
+    recovers: float = 2.0
+    arm_mass: float = 0.554
+    arm_stiffness: float = 135.0
 
 
 class Leg(NamedTuple):
@@ -100,6 +106,7 @@ class Operator:
     ) -> None:
         self._person = person or Person()
         self._points = (*route, target)
+        self._yaw = math.nan
         self._random = random.Random(seed)
         self._sight: deque[tuple[float, Vector4, Vector3]] = deque()
         self._legs: list[Leg] | None = None
@@ -109,6 +116,36 @@ class Operator:
         self._noise = ZERO3
         self._last_t = -math.inf
         self._arrived = False
+        self._distance = math.inf
+
+    def go(self, route: Sequence[Vector3], target: Vector3, yaw: float = math.nan) -> None:
+        """Turn to another route, from wherever the vehicle is seen then; what was learnt of the wind stays.
+
+        Args:
+            route: Points to pass, world ENU, m.
+            target: Where to stay, likewise.
+            yaw: Where to turn the vehicle's front, rad; NaN: as the person likes.
+        """
+        self._points, self._yaw = (*route, target), yaw
+        self._legs, self._leg = None, 0
+        self._arrived, self._distance = False, math.inf
+
+    def forget(self) -> None:
+        """Lose sight of the vehicle, as while it is flown by another: what was seen and expected is gone."""
+        self._sight.clear()
+        self._expected = ZERO3
+        self._last_t = -math.inf
+        self._legs, self._leg = None, 0
+        self._arrived, self._distance = False, math.inf
+
+    def adapt(self, person: Person) -> None:
+        """Steer as `person` from now on: the same one, who has got used to another link."""
+        self._person = person
+
+    @property
+    def distance(self) -> float:
+        """How far the vehicle is believed to be from the end of the route, m; infinite on the way there."""
+        return self._distance
 
     @property
     def leg(self) -> int:
@@ -176,7 +213,8 @@ class Operator:
             error, onward = follow(legs[self._leg], place, person)
         else:
             error, onward = _minus(self._points[-1], place), ZERO3
-        self._arrived = self._leg == len(legs) and math.hypot(*error) <= ARRIVED_WITHIN
+        self._distance = math.hypot(*error) if self._leg == len(legs) else math.inf
+        self._arrived = self._distance <= ARRIVED_WITHIN
         wanted = within(_plus(onward, error, person.crossover), person.cruise)
         surprise = _minus(self._expected, velocity)
         self._trim = within(_plus(self._trim, surprise, person.trim * dt), person.trim_limit)
@@ -199,13 +237,15 @@ class Operator:
         return self._noise
 
     def _turn(self, legs: list[Leg], yaw: float) -> float:
-        person = self._person
-        if not person.face_along or self._leg == len(legs):
-            return 0.0
-        x, y, _ = legs[self._leg].direction
-        if math.hypot(x, y) < STEEP_LEG:
-            return 0.0
-        error = math.remainder(math.atan2(y, x) - yaw, math.tau)
+        person, wanted = self._person, self._yaw
+        if math.isnan(wanted):
+            if not person.face_along or self._leg == len(legs):
+                return 0.0
+            x, y, _ = legs[self._leg].direction
+            if math.hypot(x, y) < STEEP_LEG:
+                return 0.0
+            wanted = math.atan2(y, x)
+        error = math.remainder(wanted - yaw, math.tau)
         return max(-person.turn_rate, min(person.turn_rate, person.turn_gain * error))
 
 

@@ -2,7 +2,9 @@
 
 The average one is `Person` as it stands. The others are estimates around it: with practice the effective delay falls,
 the gain rises and the remnant shrinks (McRuer and Jex 1967, A review of quasi-linear pilot models, on what training
-changes; the numbers are ours).
+changes; the numbers are ours). Who is new to a task stiffens the arm by pulling with opposed muscles at once, and
+lets go of that with practice (Osu et al. 2002, Short- and long-term changes in joint co-contraction associated with
+motor learning as revealed from surface EMG): the novice's arm is the stiffest.
 """
 
 from __future__ import annotations
@@ -22,6 +24,10 @@ PEOPLE: dict[str, Person] = {
         remnant=0.04,
         remnant_share=0.12,
         remnant_time=0.25,
+        turn_gain=0.7,
+        turn_rate=0.35,
+        recovers=4.0,
+        arm_stiffness=200.0,
     ),
     "average": Person(),
     "expert": Person(
@@ -33,6 +39,10 @@ PEOPLE: dict[str, Person] = {
         slowing=0.7,
         remnant=0.01,
         remnant_share=0.03,
+        turn_gain=1.3,
+        turn_rate=0.7,
+        recovers=1.0,
+        arm_stiffness=110.0,
     ),
 }
 
@@ -52,4 +62,5 @@ def accustomed(person: Person, delay: float) -> Person:
         slowing=share * person.slowing,
         cruise=share * person.cruise,
         trim=share * person.trim,
+        turn_gain=share * person.turn_gain,
     )

@@ -16,7 +16,8 @@ from sim.environment.world import FLOOR_NAME, World
 from sim.estimator import Estimate, Estimator
 from sim.kinematics import ZERO3, ZERO4, Vector3, Vector4, vehicle_rates, world_rates, wrap
 from sim.models.motion import GRAVITY
-from sim.scenario import Scenario, ScenarioError
+from sim.momentary import Momentary
+from sim.scenario import Gust, Scenario, ScenarioError
 
 # References upward below this leave a standing vehicle where it stands, m/s.
 LIFT_OFF = 0.05
@@ -89,6 +90,12 @@ class Simulator:
         self.autopilot = Autopilot(airframe, self._motion, self.battery, self.p)
         self._estimator = Estimator(scenario.estimate.quality, Random(f"estimate {seed}"), self.p)
         self._air = Air(scenario.wind, self.autopilot.parameters, Random(f"air {seed}"))
+        self._momentary = Momentary(
+            self.autopilot.parameters,
+            self.battery,
+            self.gust,
+            lambda lost: self.inject("gps", failed=lost),
+        )
         distance, name = self.world.clearance(start)
         if distance <= airframe.radius + SKIN:
             x, y, _ = start
@@ -104,6 +111,7 @@ class Simulator:
     def step(self, dt: float) -> None:
         """Advance by `dt` seconds; 0.004 is usual."""
         self.t += dt
+        self._momentary.step(self.t)
         believed = self._estimator.estimate
         v_ref = self.autopilot.step(
             believed.p, believed.v, self.grounded, dt, position_valid=believed.valid_position
@@ -120,6 +128,11 @@ class Simulator:
         if self._undrained >= _DRAINS_EVERY_S:
             self.battery.drain(self._thrust(), self._undrained)
             self._undrained = 0.0
+
+    def gust(self, velocity: Vector3, duration_s: float) -> None:
+        """Let one gust blow from now on: its peak, ENU, m/s, and how long it lasts from calm to calm, s."""
+        since = self.autopilot.took_off_t
+        self._air.add(Gust(0.0 if since is None else self.t - since, duration_s, velocity))
 
     def inject(self, unit: Unit, failed: bool) -> None:
         """Break a unit, or mend it.

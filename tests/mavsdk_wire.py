@@ -17,11 +17,16 @@ VEHICLE = 7
 class Wire:
     """MAVSDK as the link has it, and the one vehicle it hears.
 
+    Args:
+        autopilot: Of the vehicle, a MAV_AUTOPILOT.
+
     Attributes:
         system: The vehicle.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, autopilot: int = m.MAV_AUTOPILOT_PX4) -> None:
+        self._autopilot = autopilot
+        self._taken = 0
         # Its own lines, which it prints otherwise.
         mavsdk.log_subscribe(lambda *_: True)
         self._sent = bytearray()
@@ -41,6 +46,12 @@ class Wire:
         parser.robust_parsing = True
         return [x for x in parser.parse_buffer(bytes(self._sent)) or () if x.get_type() == kind]
 
+    def taken(self) -> bytes:
+        """Return what MAVSDK has sent since the last time."""
+        data = bytes(self._sent[self._taken :])
+        self._taken += len(data)
+        return data
+
     def until(self, condition: Callable[[], object], what: str) -> None:
         """Wait until a condition holds."""
         deadline = time.monotonic() + PATIENCE_S
@@ -54,7 +65,9 @@ class Wire:
         mavsdk.log_unsubscribe()
 
     def _found(self) -> System:
-        heartbeat = m.MAVLink_heartbeat_message(m.MAV_TYPE_QUADROTOR, m.MAV_AUTOPILOT_PX4, 0, 0, 3, 3)
+        heartbeat = m.MAVLink_heartbeat_message(
+            m.MAV_TYPE_QUADROTOR, self._autopilot, m.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED, 0, 3, 3
+        )
         found: list[System] = []
 
         def heard() -> bool:

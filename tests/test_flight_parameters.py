@@ -4,8 +4,8 @@ import pytest
 
 from bench.rig import Program
 from groundstation.messages import CommandKind, Phase
-from groundstation.vehicle.failsafes import FAILSAFES
 from groundstation.vehicle.parameters import cannot_be_set
+from groundstation.vehicle.px4 import JUDGED
 from sim.autopilot.parameters import NAMES
 
 
@@ -24,7 +24,7 @@ def test_failsafes_are_read_by_themselves_and_a_dangerous_one_keeps_the_hand_off
 
     try:
         view = program.until(
-            lambda view: {each.name for each in FAILSAFES} <= set(view.parameters), 30, "failsafes read"
+            lambda view: {each.name for each in JUDGED} <= set(view.parameters), 30, "failsafes read"
         )
         assert view.parameters["COM_OF_LOSS_T"].value == 1.0
         say(CommandKind.SET_PARAMETER, name="MPC_XY_VEL_MAX", amount=8.0)

@@ -11,7 +11,7 @@ from pymavlink.dialects.v20 import common as mavlink
 
 from bench.rig import Hand, Program, Tap, hovers, vehicle
 from groundstation.messages import COMMAND, CommandKind, FlightMode, Phase
-from groundstation.vehicle.failsafes import FAILSAFES
+from groundstation.vehicle.px4 import JUDGED
 
 pytestmark = [pytest.mark.flight, pytest.mark.timeout(180)]
 
@@ -55,7 +55,7 @@ def test_from_preflight_through_a_flight_to_the_debrief_and_back_by_keys_alone(t
     commands = program.bus.subscriber(COMMAND)
     try:
         program.until(
-            lambda view: view.status and view.status.health & 64 and len(view.parameters) >= len(FAILSAFES),
+            lambda view: view.status and view.status.health & 64 and len(view.parameters) >= len(JUDGED),
             40,
             "ready",
         )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import math
 from dataclasses import replace
 
 import msgspec
@@ -14,7 +15,7 @@ from textual.command import CommandPalette
 from textual.widgets import Input
 
 from groundstation.config import Buttons
-from groundstation.messages import CommandKind, FlightMode, Parameter, Phase
+from groundstation.messages import Autopilot, CommandKind, FlightMode, Parameter, Phase
 from groundstation.tui.acts import URGENT
 from groundstation.tui.app import FlightApp
 from groundstation.tui.lines import Lines
@@ -24,7 +25,7 @@ from groundstation.tui.screens.flight import FlightScreen
 from groundstation.tui.screens.help import Help, help_table
 from groundstation.tui.screens.page import Page
 from groundstation.tui.theme import styles_of
-from groundstation.vehicle.failsafes import FAILSAFES
+from groundstation.vehicle.px4 import JUDGED
 from sim.autopilot.parameters import SPECS
 
 GROUND = 0.3
@@ -164,8 +165,9 @@ async def test_preflight_says_of_every_check_how_it_is():
         shown = lines(scene)
         assert "✓ may be flown   ▲ 3 to know of" in shown
         for words in (
-            "haptic device", "handle", "servo", "link", "position", "home", "battery", "fence", "mission",
-            "recording", *(each.name for each in FAILSAFES),
+            "haptic device", "handle", "servo", "link", "round trip, loss", "vehicle", "health", "since boot",
+            "position", "home", "battery", "fence", "speed limits", "mission",
+            "recording", *(each.name for each in JUDGED),
         ):  # fmt: skip
             assert words in shown
         assert "COM_RC_OVERRIDE = 1" in shown
@@ -184,6 +186,11 @@ async def test_preflight_says_of_every_check_how_it_is():
         (lambda s: setattr(s.vehicle, "t", s.t - 2.0), "2.0 s old", "estimator"),
         (lambda s: setattr(s.status, "battery", 0.1), "10 %", "charge"),
         (lambda s: s.parameters.pop("COM_OF_LOSS_T"), "not read", "wait"),
+        (lambda s: setattr(s.status, "health", 126), "not calibrated: gyroscopes", "calibrate"),
+        (lambda s: setattr(s.status, "loss", 0.2), "20.0 % of frames lost", "antennas"),
+        (lambda s: setattr(s.status, "rtt", 0.9), "900 ms", "antennas"),
+        (lambda s: setattr(s.status, "speed_limits", (0.0, 3.0, 1.5)), "own are not read", "F9"),
+        (lambda s: setattr(s.parameters["MPC_XY_VEL_MAX"], "value", 0.0), "no speed around", "set the speed"),
         (lambda s: setattr(s.parameters["GF_ACTION"], "value", 4.0), "Terminate", "set Hold"),
     ],
 )
@@ -198,6 +205,44 @@ async def test_what_is_wrong_is_red_with_what_to_do(spoil, state, remedy):
         assert "■ 1 to mend" in lines(scene)
 
 
+@pytest.mark.parametrize(
+    ("spoil", "state", "remedy"),
+    [
+        (lambda s: setattr(s.status, "firmware", b""), "PX4 of unknown version", "wait"),
+        (
+            lambda s: setattr(s.status, "autopilot", Autopilot.ARDUPILOT),
+            "ArduPilot 1.15.4, untested",
+            "props off",
+        ),
+        (lambda s: setattr(s.status, "health", 63), "cannot be armed yet", "log (F12)"),
+        (lambda s: setattr(s.status, "health", 111), "local only, without GPS", "Return"),
+        (lambda s: setattr(s.vehicle, "boot_t", 4.0), "4.0 s", "settle"),
+        (lambda s: setattr(s.status, "rtt", math.nan), "not measured yet", "TIMESYNC"),
+        (
+            lambda s: setattr(s.status, "speed_limits", (2.0, 3.0, 0.7)),
+            "2 m/s around, 0.7 up and down",
+            "kept",
+        ),
+    ],
+)
+async def test_what_is_to_be_known_is_yellow_with_what_to_do(spoil, state, remedy):
+    async with cockpit(GROUND, size=(200, 70)) as scene:
+        read(scene)
+        spoil(scene.reader.shown)
+        await scene.press("f7")
+        await scene.see()
+        yellow = next(line for line in lines(scene).splitlines() if line.startswith("▲ ") and state in line)
+        assert remedy in yellow
+
+
+async def test_an_autopilot_that_is_not_known_is_red():
+    async with cockpit(GROUND, size=(200, 60)) as scene:
+        scene.reader.shown.status.autopilot = 0
+        await scene.press("f7")
+        await scene.see()
+        assert "■ vehicle              system 1, component 1, unknown autopilot" in lines(scene)
+
+
 async def test_a_recording_that_cannot_be_written_is_red_and_a_full_disk_is_cautioned_about(
     tmp_path, monkeypatch
 ):
@@ -208,10 +253,13 @@ async def test_a_recording_that_cannot_be_written_is_red_and_a_full_disk_is_caut
             scene.app._flight_run = msgspec.structs.replace(scene.app._flight_run, log=str(folder / "flight"))
             await scene.see()
             assert words in lines(scene)
-        monkeypatch.setattr("groundstation.tui.checks.shutil.disk_usage", lambda _: Disk())
+        monkeypatch.setattr("groundstation.tui.checks_here.shutil.disk_usage", lambda _: Disk())
         await scene.see()
         assert "▲ recording" in lines(scene)
-        assert "0.5 GB free" in lines(scene)
+        assert "0.5 GB free: 25 min of flight" in lines(scene)
+        Disk.free = 0.2e9
+        await scene.see()
+        assert "■ recording            0.2 GB free: 10 min" in lines(scene)
 
 
 class Disk:

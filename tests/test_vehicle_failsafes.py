@@ -1,4 +1,4 @@
-"""PX4's failsafe parameters judged: what is dangerous or unread keeps the hand from being coupled."""
+"""The vehicle's parameters judged: what is dangerous or unread keeps the hand from being coupled."""
 
 import math
 
@@ -6,8 +6,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from groundstation.messages import REASON_TEXT, Severity
-from groundstation.vehicle.failsafes import FAILSAFES, unsafe, verdict
+from groundstation.messages import REASON_TEXT, Autopilot, Severity
+from groundstation.vehicle.failsafes import verdict
+from groundstation.vehicle.profiles import PROFILES, profile_of, speed_limits, unsafe_for
 from sim.autopilot.parameters import SPECS
 
 GOOD = {
@@ -15,26 +16,47 @@ GOOD = {
     "COM_OBL_RC_ACT": 5.0,
     "NAV_RCL_ACT": 2.0,
     "NAV_DLL_ACT": 1.0,
+    "COM_RC_IN_MODE": 3.0,
+    "COM_RCL_EXCEPT": 0.0,
     "COM_RC_OVERRIDE": 3.0,
     "GF_ACTION": 2.0,
     "COM_LOW_BAT_ACT": 3.0,
+    "MPC_XY_VEL_MAX": 12.0,
+    "MPC_Z_VEL_MAX_UP": 3.0,
+    "MPC_Z_VEL_MAX_DN": 1.5,
 }
+GOOD_ARDUPILOT = {
+    "GUID_TIMEOUT": 1.0,
+    "FS_GCS_ENABLE": 1.0,
+    "FS_THR_ENABLE": 1.0,
+    "FS_OPTIONS": 16.0,
+    "FENCE_ACTION": 4.0,
+    "BATT_FS_LOW_ACT": 2.0,
+    "WPNAV_SPEED": 1000.0,
+    "WPNAV_SPEED_UP": 250.0,
+    "WPNAV_SPEED_DN": 150.0,
+}
+PX4, ARDUPILOT = PROFILES[Autopilot.PX4], PROFILES[Autopilot.ARDUPILOT]
+
+
+def unsafe(values: dict[str, float]) -> str:
+    return unsafe_for(PX4, values)
 
 
 def severity(name: str, value: float) -> Severity:
-    failsafe = next(each for each in FAILSAFES if each.name == name)
+    failsafe = next(each for each in PX4.judged if each.name == name)
     return verdict(failsafe, {name: value}).severity
 
 
 def test_what_is_well_set_is_well() -> None:
     assert unsafe(GOOD) == ""
-    assert {verdict(each, GOOD).severity for each in FAILSAFES} == {Severity.INFO}
+    assert {verdict(each, GOOD).severity for each in PX4.judged} == {Severity.INFO}
 
 
 def test_px4_as_it_comes_can_be_flown_but_is_cautioned_about() -> None:
-    usual = {each.name: SPECS[each.name].default for each in FAILSAFES}
+    usual = {each.name: SPECS[each.name].default for each in PX4.judged}
     assert unsafe(usual) == ""
-    cautioned = {each.name for each in FAILSAFES if verdict(each, usual).severity is Severity.WARNING}
+    cautioned = {each.name for each in PX4.judged if verdict(each, usual).severity is Severity.WARNING}
     assert cautioned == {"NAV_DLL_ACT", "COM_RC_OVERRIDE", "COM_LOW_BAT_ACT"}
 
 
@@ -54,6 +76,11 @@ def test_px4_as_it_comes_can_be_flown_but_is_cautioned_about() -> None:
         ("GF_ACTION", 4),
         ("COM_LOW_BAT_ACT", 9),
         ("COM_RC_OVERRIDE", 1.5),
+        ("COM_RC_IN_MODE", 9),
+        ("COM_RCL_EXCEPT", 32),
+        ("COM_RCL_EXCEPT", -1),
+        ("MPC_XY_VEL_MAX", 0.0),
+        ("MPC_Z_VEL_MAX_DN", math.nan),
     ],
 )
 def test_what_is_dangerous_is_refused_with_name_value_and_remedy(name: str, value: float) -> None:
@@ -70,7 +97,7 @@ def test_what_is_not_read_is_refused(name: str) -> None:
 
 
 def test_nothing_read_is_said_in_one_line() -> None:
-    assert "and 6 more" in unsafe({})
+    assert "and 11 more" in unsafe({})
 
 
 def test_a_late_loss_is_cautioned_about() -> None:
@@ -79,8 +106,65 @@ def test_a_late_loss_is_cautioned_about() -> None:
 
 @given(name=st.sampled_from(sorted(GOOD)), value=st.floats())
 def test_any_number_gets_a_verdict_in_words(name: str, value: float) -> None:
-    failsafe = next(each for each in FAILSAFES if each.name == name)
+    failsafe = next(each for each in PX4.judged if each.name == name)
     judged = verdict(failsafe, {name: value})
     assert judged.means
     assert (judged.severity is Severity.INFO) or judged.remedy
     assert bool(unsafe(GOOD | {name: value})) is (judged.severity is Severity.ALARM)
+
+
+def test_a_transmitter_that_is_excused_in_offboard_is_cautioned_about() -> None:
+    assert severity("COM_RCL_EXCEPT", 4) is severity("COM_RCL_EXCEPT", 7) is Severity.WARNING
+    assert severity("COM_RCL_EXCEPT", 3) is Severity.INFO
+
+
+def test_speed_limits_are_the_vehicle_s_own_and_not_known_before_they_are_read() -> None:
+    assert speed_limits(PX4, GOOD) == (12.0, 3.0, 1.5)
+    assert speed_limits(ARDUPILOT, GOOD_ARDUPILOT) == pytest.approx((10.0, 2.5, 1.5))
+    assert speed_limits(PX4, GOOD_ARDUPILOT) == speed_limits(None, GOOD) == (0.0, 0.0, 0.0)
+
+
+def test_ardupilot_has_parameters_of_its_own_and_is_called_untested() -> None:
+    assert unsafe_for(ARDUPILOT, GOOD_ARDUPILOT) == ""
+    assert "GUID_TIMEOUT and 8 more" in unsafe_for(ARDUPILOT, GOOD)
+    assert ARDUPILOT.label == "ArduPilot (untested)"
+    assert PX4.label == "PX4"
+
+
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [
+        ("GUID_TIMEOUT", 3.1),
+        ("GUID_TIMEOUT", 0.0),
+        ("FS_GCS_ENABLE", 2),
+        ("FS_OPTIONS", 64),
+        ("BATT_FS_LOW_ACT", 5),
+        ("FENCE_ACTION", 9),
+        ("WPNAV_SPEED", 0.0),
+    ],
+)
+def test_what_is_dangerous_on_ardupilot_is_refused(name: str, value: float) -> None:
+    assert unsafe_for(ARDUPILOT, GOOD_ARDUPILOT | {name: float(value)}).startswith(f"{name} = {value:g} (")
+
+
+def test_ardupilot_as_it_comes_can_be_flown_but_is_cautioned_about() -> None:
+    """Defaults of ArduCopter 4.6."""
+    usual = GOOD_ARDUPILOT | {
+        "GUID_TIMEOUT": 3.0,
+        "FS_GCS_ENABLE": 0.0,
+        "FENCE_ACTION": 1.0,
+        "BATT_FS_LOW_ACT": 0.0,
+    }
+    assert unsafe_for(ARDUPILOT, usual) == ""
+    cautioned = {each.name for each in ARDUPILOT.judged if verdict(each, usual).severity is Severity.WARNING}
+    assert cautioned == {"GUID_TIMEOUT", "FS_GCS_ENABLE", "BATT_FS_LOW_ACT"}
+
+
+def test_another_autopilot_is_not_flown() -> None:
+    assert profile_of(Autopilot.UNKNOWN) is None
+    assert "neither PX4 nor ArduPilot" in unsafe_for(None, GOOD)
+
+
+@pytest.mark.parametrize("profile", PROFILES.values(), ids=lambda each: each.name)
+def test_what_bounds_the_speed_is_among_what_is_judged(profile) -> None:
+    assert set(profile.speeds) <= {each.name for each in profile.judged}

@@ -28,19 +28,21 @@ def clock():
 
 @pytest.fixture
 def gate(clock):
-    return Gate(0.15, clock)
+    gate = Gate(0.15, clock)
+    gate.address(1, frozenset())
+    return gate
 
 
 def packer():
     return mavlink.MAVLink(None, srcSystem=255, srcComponent=190)
 
 
-def setpoint(velocity=VELOCITY, mask=MASK, frame=8, position=0.0) -> bytes:
+def setpoint(velocity=VELOCITY, mask=MASK, frame=8, position=0.0, system=1) -> bytes:
     forward, left, up, yaw_rate = velocity
     return (
         packer()
         .set_position_target_local_ned_encode(
-            1, 1, 1, frame, mask, position, 0, 0, forward, -left, -up, 0, 0, 0, 0, -yaw_rate
+            1, system, 1, frame, mask, position, 0, 0, forward, -left, -up, 0, 0, 0, 0, -yaw_rate
         )
         .pack(packer())
     )
@@ -89,6 +91,12 @@ def test_other_frames_and_masks_do_not_pass(gate, clock, mask, frame):
     assert not gate.passes(setpoint(mask=mask, frame=frame))
 
 
+@pytest.mark.parametrize("system", [0, 2, 255])
+def test_a_setpoint_for_another_vehicle_or_for_all_does_not_pass(gate, clock, system):
+    gate.authorise(VELOCITY, clock.now)
+    assert not gate.passes(setpoint(system=system))
+
+
 def test_a_zero_setpoint_passes_though_mavlink_cuts_its_zeros(gate, clock):
     gate.authorise((0.0, 0.0, 0.0, 0.0), clock.now)
     assert gate.passes(setpoint((0.0, 0.0, 0.0, 0.0)))
@@ -107,6 +115,7 @@ def test_other_messages_pass_and_other_ways_to_steer_do_not(gate):
 @given(st.tuples(*[st.floats(-20, 20, width=32)] * 4))
 def test_every_finite_velocity_survives_the_wire_format(velocity):
     gate = Gate(0.15, lambda: 5.0)
+    gate.address(1, frozenset())
     assert gate.authorise(velocity, 5.0)
     assert gate.passes(setpoint(velocity))
 

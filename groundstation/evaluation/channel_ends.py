@@ -34,7 +34,7 @@ class _Kind(IntEnum):
 _SETPOINT = struct.Struct("<B4d")
 _REQUEST = struct.Struct("<BB")
 _TIMESYNC = struct.Struct("<BBI")
-_TELEMETRY = struct.Struct("<BBBB8d")
+_TELEMETRY = struct.Struct("<BBBBBd8d")
 
 
 class Request(IntEnum):
@@ -52,11 +52,15 @@ class Report(NamedTuple):
         sample: Position and velocity as it believes them.
         offboard: The setpoints steer it.
         armed: Its motors run.
+        trusted: It trusts its own position.
+        battery: What is left, 0 to 1.
     """
 
     sample: VehicleSample
     offboard: bool
     armed: bool
+    trusted: bool
+    battery: float
 
 
 class Link:
@@ -124,9 +128,9 @@ class GroundEnd:
             if frame[0] == _Kind.TIMESYNC:
                 self._trips.answered(_TIMESYNC.unpack(frame)[2], t)
                 continue
-            _, _, offboard, armed, x, y, z, yaw, vx, vy, vz, turn = _TELEMETRY.unpack(frame)
+            _, _, offboard, armed, trusted, battery, x, y, z, yaw, vx, vy, vz, turn = _TELEMETRY.unpack(frame)
             self.sample = VehicleSample((x, y, z, yaw), (vx, vy, vz, turn))
-            self.report = Report(self.sample, bool(offboard), bool(armed))
+            self.report = Report(self.sample, bool(offboard), bool(armed), bool(trusted), battery)
             self.heard_t = t
 
 
@@ -161,8 +165,8 @@ class VehicleEnd:
 
     def tell(self, t: float, report: Report) -> None:
         """Send telemetry."""
-        (position, velocity), offboard, armed = report
-        self._send(t, _TELEMETRY.pack(_Kind.TELEMETRY, self._sequence, offboard, armed, *position, *velocity))
+        (position, velocity), *told = report
+        self._send(t, _TELEMETRY.pack(_Kind.TELEMETRY, self._sequence, *told, *position, *velocity))
 
     def _send(self, t: float, frame: bytes) -> None:
         self._sequence = (self._sequence + 1) % _SEQUENCE

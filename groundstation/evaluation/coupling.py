@@ -31,20 +31,26 @@ class Coupling:
         settings: Staleness, and when a handle is centred.
         device: The handle.
         end: The ground's end of the link.
+        hesitates: How long the operator waits where the coupling could be had again after it was lost, s.
 
     Attributes:
         phase: How far the hand is coupled.
+        present: The handle is there.
         losses: How often it was uncoupled against the operator's will.
         reason: Why last, in words.
     """
 
-    def __init__(self, settings: Settings, device: DeviceInfo, end: GroundEnd) -> None:
+    def __init__(
+        self, settings: Settings, device: DeviceInfo, end: GroundEnd, hesitates: float = 0.0
+    ) -> None:
         self._settings, self._device, self._end = settings, device, end
+        self._hesitates = hesitates
         self._engagement = Engagement()
         self._next_request = -math.inf
         self._next_engage = -math.inf
         self._landing = False
         self.phase = Phase.DISENGAGED
+        self.present = True
         self.losses = 0
         self.reason = ""
 
@@ -76,7 +82,9 @@ class Coupling:
             self._next_engage = t + _COUPLE_AGAIN_S
             self._next_request = -math.inf
         elif not self._landing and t >= self._next_engage:
-            self._engagement, _ = engage(self._engagement, conditions, safety)
+            self._engagement, refused = engage(self._engagement, conditions, safety)
+            if refused and self.losses:
+                self._next_engage = t + self._hesitates
         self.phase = self._engagement.phase
         request = self._request()
         if request is not None and t >= self._next_request:
@@ -103,7 +111,7 @@ class Coupling:
             t=t,
             gap=0.0,
             believable=report is None or believable((*report.sample.position, *report.sample.velocity)),
-            present=True,
+            present=self.present,
             homed=True,
             centred=centred(handle, self._device, self._settings.mapping.yaw_range),
             handle_age=0.0,
@@ -113,7 +121,7 @@ class Coupling:
             mode=FlightMode.OFFBOARD if offboard else FlightMode.HOLD,
             streaming=streaming,
             state_age=t - end.heard_t,
-            state_valid=True,
+            state_valid=report is None or report.trusted,
             boots=0,
             link_fault=link_fault(end.round_trip, end.loss, self._settings.link),
         )

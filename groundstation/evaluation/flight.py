@@ -44,6 +44,7 @@ class Setup(NamedTuple):
         controller: Another than the paper's.
         fence: Where the hand may take the vehicle.
         operator: Couples and chooses; unless given, is coupled and keeps to what the settings choose.
+        hesitates: How long that takes after a coupling was lost and could be had again, s.
     """
 
     scenario: Scenario
@@ -56,6 +57,11 @@ class Setup(NamedTuple):
     controller: Controller | None = None
     fence: Fence | None = None
     operator: Operator | None = None
+    hesitates: float = 0.0
+
+
+def _unseen(_: Simulator) -> None:
+    """Pass over the climb."""
 
 
 # Makes the hand that fits a mapping and a handle.
@@ -70,9 +76,11 @@ class VirtualFlight:
         hand: Makes the one on the handle.
         observers: Are shown a sample with every setpoint.
         arm: Moves the handle; a person's unless given.
+        climbing: Is shown the vehicle after every step of the take-off.
 
     Attributes:
         vehicle: The simulated vehicle, for who wants the truth.
+        link: Between the sites.
         local: The operator's side.
 
     Raises:
@@ -81,15 +89,20 @@ class VirtualFlight:
     """
 
     def __init__(
-        self, setup: Setup, hand: HandMaker, observers: tuple[Observer, ...] = (), arm: Mover | None = None
+        self,
+        setup: Setup,
+        hand: HandMaker,
+        observers: tuple[Observer, ...] = (),
+        arm: Mover | None = None,
+        climbing: Callable[[Simulator], None] = _unseen,
     ) -> None:
         settings = setup.settings
         device = handle_at(setup.rate)
-        self.vehicle = build(setup.scenario, seed=setup.seed)
-        link = Link(setup.up, setup.down, setup.seed)
-        self._remote = RemoteSite(self.vehicle, link, settings.rates.telemetry)
-        self._remote.take_off(setup.altitude)
-        pilot = Pilot(settings, device, known(self.vehicle, setup), setup.controller)
+        vehicle = self.vehicle = build(setup.scenario, seed=setup.seed)
+        link = self.link = Link(setup.up, setup.down, setup.seed)
+        self._remote = RemoteSite(vehicle, link, settings.rates.telemetry)
+        self._remote.take_off(setup.altitude, climbing)
+        pilot = Pilot(settings, device, known(vehicle, setup), setup.controller)
         self.local = LocalSite(
             pilot=pilot,
             hand=hand(RateMapping(settings.mapping, device.workspace), device),
@@ -97,8 +110,9 @@ class VirtualFlight:
             device=device,
             settings=settings,
             operator=setup.operator or Steady(beginning(settings).choices),
-            start_t=self.vehicle.t,
+            start_t=vehicle.t,
             arm=arm,
+            hesitates=setup.hesitates,
         )
         self._observers = observers
         self._ticks_between = round(setup.rate) // STEPS_HZ - 1

@@ -48,6 +48,7 @@ class LocalSite:
         operator: Couples and chooses.
         start_t: When it begins, s.
         arm: Moves the handle where the hand wants it; a person's unless given.
+        hesitates: As `Coupling` has it, s.
 
     Attributes:
         pilot: As given.
@@ -73,6 +74,7 @@ class LocalSite:
         operator: Operator,
         start_t: float,
         arm: Mover | None = None,
+        hesitates: float = 0.0,
     ) -> None:
         self.pilot, self._hand, self.operator = pilot, hand, operator
         self._workspace = device.workspace
@@ -84,7 +86,7 @@ class LocalSite:
         self._start_t, self._ticks = start_t, 0
         self.t = start_t
         self.end = GroundEnd(link)
-        self.coupling = Coupling(settings, device, self.end)
+        self.coupling = Coupling(settings, device, self.end, hesitates)
         self.handle = HandleState(ZERO3, ZERO3, 0.0, 0, homed=True, device_time=start_t)
         _, self.outputs = pilot.step(
             self._memory, Inputs(self._dt, self.coupling.phase, _CUT, self.handle, self.end.sample, inf)

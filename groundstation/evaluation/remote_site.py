@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from groundstation.evaluation.channel_ends import Link, Report, Request, VehicleEnd
 from groundstation.pilot.sight import VehicleSample
 from sim.autopilot.guidance import Target
@@ -35,8 +37,12 @@ class RemoteSite:
         self._telemetry_every = max(1, round(1.0 / (telemetry_hz * STEP_S)))
         self._steps = 0
 
-    def take_off(self, altitude: float) -> None:
+    def take_off(self, altitude: float, climbing: Callable[[Simulator], None]) -> None:
         """Climb to `altitude`, m, by the autopilot alone, and come to rest there.
+
+        Args:
+            altitude: Above the ground, m.
+            climbing: Is shown the vehicle after every step.
 
         Raises:
             TakeOffError: It will not arm, or is not up after a minute.
@@ -47,12 +53,14 @@ class RemoteSite:
                 raise TakeOffError(f"The vehicle will not take off: {verdict.why}.")
         for _ in range(round(_CLIMB_S / STEP_S)):
             vehicle.step(STEP_S)
+            climbing(vehicle)
             if autopilot.mode is Mode.HOLD:
                 break
         else:
             raise TakeOffError(f"The vehicle is not at {altitude:g} m after {_CLIMB_S:.0f} s.")
         for _ in range(round(_SETTLE_S / STEP_S)):
             vehicle.step(STEP_S)
+            climbing(vehicle)
 
     def step(self) -> None:
         """Do what came over the link, fly for `STEP_S`, tell of it where that is due."""
@@ -74,7 +82,8 @@ class RemoteSite:
 
     def _tell(self) -> None:
         vehicle = self.vehicle
-        p, v, _ = vehicle.estimate
+        p, v, trusted = vehicle.estimate
         sample = VehicleSample(p, world_rates(p[3], v))
         offboard = vehicle.autopilot.mode is Mode.OFFBOARD
-        self._end.tell(vehicle.t, Report(sample, offboard, vehicle.autopilot.armed))
+        report = Report(sample, offboard, vehicle.autopilot.armed, trusted, vehicle.battery.remaining)
+        self._end.tell(vehicle.t, report)

@@ -10,11 +10,14 @@ from __future__ import annotations
 from math import cos, isfinite, sin
 from typing import NamedTuple
 
+import msgspec
+
 from groundstation import config
-from groundstation.frames import Vector4
+from groundstation.frames import Vector3, Vector4
 
 # Closer than this to the target nothing is worth a push, m/s or rad/s.
 _THERE = 1e-12
+_NONE = float("inf")
 
 
 class Bounds(NamedTuple):
@@ -38,6 +41,22 @@ class SetpointMotion(NamedTuple):
     plane: Motion = Motion()
     up: Motion = Motion()
     yaw: Motion = Motion()
+
+
+def bounded(limits: config.Limits, vehicle: Vector3) -> config.Limits:
+    """Return limits with speeds that are no larger than the vehicle's own.
+
+    Args:
+        limits: As set.
+        vehicle: Its largest speeds around, up and down, m/s; what is not a positive number is not known. The smaller
+            of up and down holds both ways.
+    """
+    around, up, down = (speed if speed > 0.0 else _NONE for speed in vehicle)
+    horizontal = min(limits.horizontal_speed, around)
+    vertical = min(limits.vertical_speed, up, down)
+    if (horizontal, vertical) == (limits.horizontal_speed, limits.vertical_speed):
+        return limits
+    return msgspec.structs.replace(limits, horizontal_speed=horizontal, vertical_speed=vertical)
 
 
 class SetpointLimiter:

@@ -45,6 +45,7 @@ class VehicleFeed:
         connected, armed, in_air, mode, streaming: As in `VehicleStatus`.
         delay: Measured round trip, s; NaN while it is not known.
         unsafe: Why its own failsafes keep the hand from being coupled, or "".
+        speed_limits: The largest speeds that it allows, m/s: around, up, down; 0 where that is not known.
         loss: Share of its frames lost lately, 0 to 1.
         seen: Points of obstacles that its own sensors see and that matter where it will be, world, m; see
             `groundstation.pilot.ranges`.
@@ -74,6 +75,7 @@ class VehicleFeed:
         self.delay = nan
         self.loss = 0.0
         self.unsafe = ""
+        self.speed_limits: Vector3 = (0.0, 0.0, 0.0)
         self.seen: tuple[Vector3, ...] = ()
 
     def update(self, now: float, ahead: Vector4) -> None:
@@ -127,6 +129,8 @@ class VehicleFeed:
         self.mode = FlightMode(status.mode)
         self.streaming = Stream(status.streaming)
         self.unsafe = status.unsafe.decode(errors="replace")
+        around, up, down = (max(0.0, limit) for limit in status.speed_limits)
+        self.speed_limits = (around, up, down)
         self.delay = status.rtt if believable((status.rtt,)) and status.rtt > 0.0 else nan
         # What cannot be is taken for the worst.
         self.loss = status.loss if 0.0 <= status.loss <= 1.0 else 1.0

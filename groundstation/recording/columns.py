@@ -20,6 +20,7 @@ from groundstation.messages import (
     MISSION_PROGRESS,
     OBSTACLES,
     PILOT_STATE,
+    POINTS_LOST,
     SERVO_REPORT,
     SETPOINT,
     TICK_INPUTS,
@@ -217,6 +218,11 @@ _NUMBERS: tuple[tuple[Topic[Any], tuple[tuple[Quantity, Callable[[Rows], Numbers
             (schema.RAW_RATES, _fields("rates")),
         ),
     ),
+    # A moment's length and not its end: the timeline has its beginning.
+    (
+        POINTS_LOST,
+        ((schema.LOST, lambda rows: np.column_stack((rows["points"], rows["until"] - rows["t"]))),),
+    ),
     (COMMAND, ((schema.COMMANDED, _fields("number", "kind", "value")),)),
     (COMMAND_ANSWER, ((schema.ANSWERED, _fields("number", "kind", "ok")),)),
 )
@@ -230,6 +236,7 @@ _RARE: tuple[tuple[Topic[Any], Quantity, Callable[[Rows], Numbers]], ...] = (
     (VEHICLE_STATUS, schema.SYSTEM_ID, _fields("system_id")),
     (SERVO_REPORT, schema.REALTIME, _fields("realtime")),
     (VEHICLE_STATUS, schema.STATUS, _fields("connected", "armed", "in_air", "mode", "streaming")),
+    (VEHICLE_STATUS, schema.SPEED_LIMITS, _fields("speed_limits")),
     (DEVICE_REPORT, schema.LIMITS, _fields("axes", "workspace", "force_limit", "stiffness_limit", "rate")),
 )
 

@@ -201,6 +201,13 @@ ANSWERED = Quantity(
     "as given",
     "Answers: of which command, its `CommandKind`, and 1 where it was done, 0 where refused",
 )
+SPEED_LIMITS = Quantity(
+    "/vehicle/speed_limits",
+    ("around", "up", "down"),
+    "m/s",
+    "on change",
+    "Largest speeds that the vehicle allows; 0 is not known",
+)
 SYSTEM_ID = Quantity(
     "/vehicle/system_id", ("system id",), "count", "on change", "The vehicle's own in MAVLink"
 )
@@ -292,6 +299,14 @@ CLEARANCE = Quantity(
 LEGS = Quantity("/mission/legs", ("flown", "of"), "legs", "mission", "How far along the route")
 COLLISIONS = Quantity("/mission/collisions", ("collisions",), "contacts", "mission", "With obstacles, so far")
 
+LOST = Quantity(
+    "/mission/lost",
+    ("points", "length"),
+    "of 100, s",
+    "once landed",
+    "What a moment cost of the score, and how long it was",
+)
+
 QUANTITIES: tuple[Quantity, ...] = (
     HANDLE_POSITION, HANDLE_VELOCITY, SAMPLE_AGE, HANDLE_FORCE, HANDLE_ENERGY, HANDLE_BUTTONS,
     HANDLE_READY, CENTRED, SETPOINT_NUMBER,
@@ -300,12 +315,12 @@ QUANTITIES: tuple[Quantity, ...] = (
     PREDICTED, PREDICTED_VELOCITY, STOP, PUSH,
     *REFERENCES, *EXECUTED,
     POSITION, VELOCITY, UNTRUSTED, ATTITUDE, RAW_ATTITUDE, RAW_RATES, SYSTEM_ID, BOOT_TIME,
-    BATTERY, VOLTAGE, HEALTH_BITS, STATUS,
+    BATTERY, VOLTAGE, HEALTH_BITS, STATUS, SPEED_LIMITS,
     RING, RANGES, RANGE_LIMIT,
     STATE_AGE, HANDLE_AGE, ROUND_TRIP, RECKONED, SILENCE,
     LOSS, GATE,
     SERVO_RATE, SERVO_LATE, SERVO_RUN, REALTIME, SERVO_TIME, SERVO_TICKS, TICK, KNOWN, LIMITS,
-    TARGET_DISTANCE, CLEARANCE, LEGS, COLLISIONS,
+    TARGET_DISTANCE, CLEARANCE, LEGS, COLLISIONS, LOST,
     COMMANDED, ANSWERED,
 )  # fmt: skip
 

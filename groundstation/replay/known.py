@@ -82,15 +82,18 @@ def _statuses(flight: Flight) -> Iterator[VehicleStatus]:
             flight.series(schema.LOSS).values,
             flight.series(schema.ROUND_TRIP).values,
             flight.held(schema.STATUS, t),
+            # A recording from before them has none: not known.
+            np.nan_to_num(flight.held(schema.SPEED_LIMITS, t)),
         )
     )
     # Lines of text have whole milliseconds; statuses are tens of them apart.
     told = [(line.t - _TEXT_S, line.text) for line in flight.texts(entities.UNSAFE)]
     for when, loss, rtt, *codes in numbers.tolist():
-        connected, armed, in_air, mode, stream = map(int, codes)
+        connected, armed, in_air, mode, stream = map(int, codes[:5])
         unsafe = next((words for since, words in reversed(told) if since <= when - flight.start), "")
         yield VehicleStatus(
             t=when,
+            speed_limits=tuple(codes[5:]),
             unsafe=b"" if unsafe == SAFE else unsafe.encode(),
             loss=loss,
             rtt=rtt,

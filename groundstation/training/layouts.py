@@ -82,7 +82,7 @@ def gates(dice: random.Random, grade: Grade, room: float) -> Layout:
     headings = _headings(dice, grade, grade.count + 1)
     for number in range(grade.count):
         x, y, z = points[-1]
-        far = dice.uniform(4.0, 6.0) + wide
+        far = dice.uniform(2.5, 4.5) + wide
         z = min(max(dice.uniform(z - 0.5, z + 0.5), lowest), lowest + 1.5, z + 0.2 * far)
         points.append((x + far * math.cos(headings[number]), y + far * math.sin(headings[number]), z))
         yaw = math.degrees(0.5 * (headings[number] + headings[number + 1]))
@@ -108,6 +108,8 @@ def forest(dice: random.Random, grade: Grade, room: float) -> Layout:
     empty = Mission(1, "f", "f", route=tuple(route), target=Target(_point(*points[-1], ALTITUDE_M)))
     trees: list[Obstacle] = []
     for _ in range(12 * grade.count):
+        if len(trees) == 3 * grade.count:
+            break
         (x, y), (east, north) = _along(dice, points)
         radius = round(dice.uniform(0.15, 0.35), 2)
         off = dice.choice((-1.0, 1.0)) * (room + radius + 0.1 + dice.expovariate(0.7))
@@ -126,7 +128,7 @@ def corridor(dice: random.Random, grade: Grade, room: float) -> Layout:
     Its walls are the middle line moved aside: where it bends by φ the corner lies 1/cos(φ/2) as far out.
     """
     bends = max(grade.count - 2, 1)
-    points = [(2.0, 0.0), *_bending(dice, grade, (4.0 + 2.0 * room, 0.0), bends + 1, 4.0 + 2.0 * room)]
+    points = [(2.0, 0.0), *_bending(dice, grade, (4.0 + 2.0 * room, 0.0), bends + 1, 3.0 + 2.0 * room)]
     walls = [
         wall
         for side, where in ((1.0, "left"), (-1.0, "right"))

@@ -12,7 +12,10 @@ from mavsdk.plugins.offboard import Offboard, OffboardResult, VelocityBodyYawspe
 
 from groundstation.frames import Vector4, frd_from_flu
 from groundstation.messages import CommandKind
+from groundstation.vehicle.gate import Gate
 
+# MAVSDK sets this parameter of PX4's; another autopilot is given the altitude with the command.
+_TAKEOFF_ALTITUDE = "MIS_TAKEOFF_ALT"
 RADIANS_TO_DEGREES = 57.29577951308232
 
 # Commands that change who steers: the offboard stream makes room for them.
@@ -61,13 +64,15 @@ class Commander:
 
     Args:
         system: The vehicle.
+        gate: Lets pass what is rarely meant only when it is.
         takeoff_altitude: Where take-off ends, m above the ground.
 
     Attributes:
         answers, offboard_answers: What has been answered since they were last emptied.
     """
 
-    def __init__(self, system: System, takeoff_altitude: float) -> None:
+    def __init__(self, system: System, gate: Gate, takeoff_altitude: float) -> None:
+        self._gate = gate
         self._action = Action(system)
         self._offboard = Offboard(system)
         self._takeoff_altitude = takeoff_altitude
@@ -78,7 +83,7 @@ class Commander:
             CommandKind.LAND: self._action.land_async,
             CommandKind.RETURN: self._action.return_to_launch_async,
             CommandKind.HOLD: self._action.hold_async,
-            CommandKind.KILL: self._action.kill_async,
+            CommandKind.KILL: self._kill,
         }
         self.answers: queue.SimpleQueue[Answer] = queue.SimpleQueue()
         self.offboard_answers: queue.SimpleQueue[OffboardAnswer] = queue.SimpleQueue()
@@ -104,6 +109,10 @@ class Commander:
             VelocityBodyYawspeed(forward, right, down, yaw_rate * RADIANS_TO_DEGREES)
         )
 
+    def _kill(self, answered: Callable[[ActionResult, object], None]) -> None:
+        self._gate.allow_kill()
+        self._action.kill_async(answered)
+
     def _takeoff(self, answered: Callable[[ActionResult, object], None]) -> None:
         def altitude_set(result: ActionResult, _: object) -> None:
             if result is ActionResult.SUCCESS:
@@ -111,6 +120,7 @@ class Commander:
             else:
                 answered(result, None)
 
+        self._gate.allow_parameter(_TAKEOFF_ALTITUDE)
         self._action.set_takeoff_altitude_async(self._takeoff_altitude, altitude_set)
 
     def _on_started(self, result: OffboardResult, _: object) -> None:

@@ -1,9 +1,9 @@
-"""The gate: no setpoint leaves that was not given within the last 150 ms.
+"""The gate: no setpoint leaves that was not given within the last 150 ms, and nothing else that is not meant.
 
 MAVSDK re-sends its last offboard setpoint at 20 Hz from a thread of its own, whatever happened to the
 program that gave it. A hung pilot would fly on, with every failsafe of the vehicle satisfied. So MAVSDK's
 bytes pass here before they reach a socket, and a frame that steers passes only when it carries a setpoint
-that was authorised a moment ago.
+that was authorised a moment ago. Every other frame must be on the list in `groundstation.vehicle.allowed`.
 """
 
 from __future__ import annotations
@@ -14,11 +14,11 @@ from collections import deque
 from collections.abc import Callable
 
 from groundstation.frames import Vector4, frd_from_flu
+from groundstation.vehicle.allowed import COMMAND_LONG, Addressee, refusal
 
 SET_POSITION_TARGET_LOCAL_NED = 84
-# SET_ATTITUDE_TARGET, SET_POSITION_TARGET_GLOBAL_INT, MANUAL_CONTROL, RC_CHANNELS_OVERRIDE,
-# SET_ACTUATOR_CONTROL_TARGET: they steer too, and this program never means to send them.
-_NEVER = frozenset({82, 86, 69, 70, 139})
+# MAVSDK sends a command four times, half a second apart; setting a parameter takes a little longer.
+KILL_S, PARAMETER_S = 3.0, 5.0
 
 _PAYLOAD = struct.Struct("<I11fHBBB")
 _FRAME_BODY_NED = 8
@@ -33,18 +33,40 @@ class Gate:
     Args:
         stale_s: Age from which an authorised setpoint no longer opens the gate, s.
         clock: Monotonic seconds.
+        tell: Takes a sentence about what is kept back and is no setpoint, once for each kind.
 
     Attributes:
         sent: Setpoint frames that passed.
-        dropped: Steering frames that were kept back.
+        dropped: Frames that were kept back.
     """
 
-    def __init__(self, stale_s: float, clock: Callable[[], float]) -> None:
+    def __init__(
+        self, stale_s: float, clock: Callable[[], float], tell: Callable[[str], None] = lambda _: None
+    ) -> None:
         self._stale_s = stale_s
         self._clock = clock
+        self._tell = tell
+        self._told: set[tuple[int, int]] = set()
         self._authorised: deque[tuple[float, Vector4]] = deque(maxlen=8)
+        self._system = 0
+        self._modes: frozenset[tuple[float, float]] = frozenset()
+        self._kill_until = -math.inf
+        self._parameters: dict[str, float] = {}
         self.sent = 0
         self.dropped = 0
+
+    def address(self, system: int, modes: frozenset[tuple[float, float]]) -> None:
+        """Let pass what is for a vehicle, by its system id, and asks it for one of these modes, main and sub."""
+        self._system, self._modes = system, modes
+
+    def allow_kill(self) -> None:
+        """Let a kill pass for a moment: the operator has confirmed it."""
+        self._kill_until = self._clock() + KILL_S
+
+    def allow_parameter(self, name: str) -> None:
+        """Let a parameter be set for a moment."""
+        # A new dictionary: another thread may be reading the old one.
+        self._parameters = self._parameters | {name: self._clock() + PARAMETER_S}
 
     def authorise(self, velocity: Vector4, made_t: float) -> bool:
         """Let frames pass that carry this velocity (FLU, m/s and rad/s), while it is young.
@@ -65,24 +87,37 @@ class Gate:
         """Say whether a MAVLink frame may leave."""
         number = message_number(frame)
         if number == SET_POSITION_TARGET_LOCAL_NED:
-            if self._is_fresh(frame):
-                self.sent += 1
-                return True
-            self.dropped += 1
-            return False
-        if number in _NEVER:
-            self.dropped += 1
-            return False
-        return True
+            passes = self._is_fresh(frame)
+            self.sent += passes
+        else:
+            passes = self._is_allowed(number, frame)
+        self.dropped += not passes
+        return passes
+
+    def _is_allowed(self, number: int, frame: bytes) -> bool:
+        now = self._clock()
+        parameters = frozenset(name for name, until in self._parameters.items() if now <= until)
+        addressee = Addressee(self._system, self._modes, now <= self._kill_until, parameters)
+        payload = payload_of(frame)
+        why = refusal(number, payload, addressee)
+        if not why:
+            return True
+        command = int.from_bytes(payload[28:30], "little") if number == COMMAND_LONG else 0
+        if (number, command) not in self._told:
+            self._told.add((number, command))
+            self._tell(f"MAVLink message {number} was kept back: {why}.")
+        return False
 
     def _is_fresh(self, frame: bytes) -> bool:
         """Say whether a setpoint frame carries a velocity authorised a moment ago, and nothing else."""
-        header = 10 if frame[0] == _V2 else 6
         # MAVLink 2 cuts trailing zero bytes off the payload; put them back before reading it.
-        payload = frame[header : header + frame[1]].ljust(_PAYLOAD.size, b"\0")
-        values = _PAYLOAD.unpack(payload[: _PAYLOAD.size])
+        values = _PAYLOAD.unpack(payload_of(frame)[: _PAYLOAD.size].ljust(_PAYLOAD.size, b"\0"))
         velocity = (*values[4:7], values[11])
-        if values[12] != _VELOCITY_AND_YAW_RATE or values[15] != _FRAME_BODY_NED:
+        if (
+            values[12] != _VELOCITY_AND_YAW_RATE
+            or values[15] != _FRAME_BODY_NED
+            or values[13] != self._system
+        ):
             return False
         oldest = self._clock() - self._stale_s
         return any(
@@ -99,6 +134,12 @@ def message_number(frame: bytes) -> int:
     if len(frame) >= 8 and frame[0] == _V1:
         return frame[5]
     return -1
+
+
+def payload_of(frame: bytes) -> bytes:
+    """Return a frame's payload as it is on the wire."""
+    header = 10 if frame[:1] == bytes((_V2,)) else 6
+    return frame[header : header + frame[1]] if len(frame) > header else b""
 
 
 def origin(frame: bytes) -> tuple[int, int, int]:

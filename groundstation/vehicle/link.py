@@ -11,18 +11,23 @@ import queue
 import threading
 import time
 from collections import deque
+from pathlib import Path
 
 import mavsdk
 from mavsdk import Configuration, Mavsdk, System
 
 from groundstation.bus import Bus
 from groundstation.child import Lifeline, run_child
+from groundstation.conditions import Conditions
+from groundstation.errors import InputError
+from groundstation.failsafe import BY_FAULT, Fault
 from groundstation.frames import Vector4
 from groundstation.messages import (
     ANSWER_TEXT,
     ATTITUDE,
     COMMAND,
     COMMAND_ANSWER,
+    FIRMWARE_TEXT,
     OBSTACLES,
     REASON_TEXT,
     SETPOINT,
@@ -37,16 +42,21 @@ from groundstation.messages import (
     fit,
 )
 from groundstation.run import Run
+from groundstation.vehicle.asleep import Sleep
 from groundstation.vehicle.commander import STEERING, Answer, Commander
 from groundstation.vehicle.gate import Gate
+from groundstation.vehicle.identity import Identity
+from groundstation.vehicle.interventions import Interventions
 from groundstation.vehicle.obstacle_view import ObstacleView
 from groundstation.vehicle.offboard import Act, OffboardStream, Seen
 from groundstation.vehicle.parameter_desk import PARAMETER_COMMANDS, ParameterDesk
+from groundstation.vehicle.profiles import profile_of
 from groundstation.vehicle.pump import Pump
 from groundstation.vehicle.round_trip import RoundTrip
+from groundstation.vehicle.signing import Refusals, Signing, read_key
 from groundstation.vehicle.telemetry import Notes, VehicleView
 from groundstation.vehicle.tlog import TlogWriter
-from groundstation.vehicle.transport import TransportError, UrlError, open_transport, parse_url
+from groundstation.vehicle.transport import TransportError, open_transport, parse_url
 
 ROLE = "link"
 # MAV_COMP_ID_MISSIONPLANNER: the ground station's usual component, with the usual GCS system id.
@@ -57,6 +67,7 @@ _DISCOVERY_S = 0.05
 _DEFAULT_TAKEOFF_M = 2.0
 _REASON_S = 1.5
 _LEAVE_S = 0.2
+_SILENT = BY_FAULT[Fault.LINK_SILENT]
 
 # Commands that are the pilot's to follow and to answer.
 _PILOTS = frozenset(
@@ -83,11 +94,14 @@ class Link:
         pump: Moves the bytes.
         gate: Keeps stale setpoints back.
         notes: What other threads want told as events.
+        sleep: Whether the computer slept; the gate goes by its clock.
     """
 
-    def __init__(self, run: Run, bus: Bus, mav: Mavsdk, pump: Pump, gate: Gate, *, notes: Notes) -> None:
+    def __init__(
+        self, run: Run, bus: Bus, mav: Mavsdk, pump: Pump, gate: Gate, *, notes: Notes, sleep: Sleep
+    ) -> None:
         self._run, self._bus, self._mav, self._pump, self._gate = run, bus, mav, pump, gate
-        self._notes = notes
+        self._notes, self._sleep = notes, sleep
         self._setpoints = bus.subscriber(SETPOINT, depth=1)
         self._waker = bus.waker(SETPOINT)
         self._commands = bus.subscriber(COMMAND)
@@ -98,20 +112,24 @@ class Link:
         self._answers = bus.publisher(COMMAND_ANSWER)
         self._status = VehicleStatus(rtt=math.nan, battery=math.nan, voltage=math.nan)
         self._view = VehicleView(notes, time.monotonic)
-        self._stream = OffboardStream(run.settings.safety.setpoint_stale_s)
+        self._stream = OffboardStream(run.settings.safety)
         self._commander: Commander | None = None
         self._round_trip: RoundTrip | None = None
         self._obstacles: ObstacleView | None = None
         self._desk: ParameterDesk | None = None
+        self._identity: Identity | None = None
+        self._interventions = Interventions(bus, simulated=run.simulated)
         self._given = 0
         self._denials: deque[tuple[float, str]] = deque(maxlen=4)
         self._next_status = 0.0
         self._next_discovery = 0.0
         self._silent = False
+        self._refusals = Refusals()
 
     def turn(self) -> None:
         """Pass records once around; never waits."""
         now = time.monotonic()
+        self._wake()
         if self._commander is None:
             self._discover(now)
         else:
@@ -119,8 +137,11 @@ class Link:
             self._collect_answers(now)
         if self._round_trip:
             self._round_trip.turn()
+        if self._identity:
+            self._identity.turn()
         for command in self._commands.drain():
             self._obey(command, now)
+        self._interventions.turn(now)
         self._pass_on_sights()
         if self._desk:
             for answer in self._desk.pass_on(now, self._view.boots):
@@ -143,7 +164,17 @@ class Link:
 
     def close(self) -> bool:
         """End what waits for the vehicle; say whether MAVSDK may be taken away now."""
-        return self._desk is None or self._desk.close()
+        freed = self._interventions.close()
+        return (self._desk is None or self._desk.close()) and freed
+
+    def _wake(self) -> None:
+        """After a sleep nothing that was being flown goes on, however young the monotonic clock says it is."""
+        if slept := self._sleep.news():
+            words = f"this computer slept for {slept:.1f} s"
+            act, why = self._stream.interrupted(f"{words}; the vehicle holds")
+            self._do(act, why)
+            if not why:
+                self._bus.event(Severity.WARNING, f"{words[0].upper()}{words[1:]}.")
 
     def _discover(self, now: float) -> None:
         if now < self._next_discovery:
@@ -156,13 +187,19 @@ class Link:
     def _attach(self, system: System) -> None:
         mission = self._run.mission
         altitude = mission.takeoff_altitude_m if mission else _DEFAULT_TAKEOFF_M
-        self._commander = Commander(system, altitude)
+        profile = profile_of(system.autopilot_type())
+        self._gate.address(system.get_system_id(), profile.modes if profile else frozenset())
+        self._commander = Commander(system, self._gate, altitude)
         self._round_trip = RoundTrip(system, time.monotonic)
         self._obstacles = ObstacleView(system, self._view.yaw, self._notes, time.monotonic)
-        self._desk = ParameterDesk(self._bus, system)
+        self._desk = ParameterDesk(self._bus, system, self._gate, profile)
+        self._identity = Identity(system, time.monotonic)
+        self._interventions.attach(system, self._gate, lambda: time.monotonic() - self._pump.heard_t)
         self._view.attach(system, self._run.settings.rates.telemetry)
-        self._status.system_id = system.get_system_id()
-        self._bus.event(Severity.INFO, f"Vehicle {self._status.system_id} found on {self._run.url}.")
+        self._status.system_id, self._status.autopilot = system.get_system_id(), system.autopilot_type()
+        kind = profile.label if profile else "unknown autopilot"
+        words = f"Vehicle {self._status.system_id}, {kind}, found on {self._run.url}."
+        self._bus.event(Severity.INFO if profile and profile.tested else Severity.WARNING, words)
 
     def _fly(self, now: float) -> None:
         """Stream the newest setpoint, or end the stream."""
@@ -180,7 +217,7 @@ class Link:
             self._commander.start_offboard()
 
     def _give(self, velocity: Vector4, made_t: float) -> None:
-        if self._commander and self._gate.authorise(velocity, made_t):
+        if self._commander and self._gate.authorise(velocity, made_t + self._sleep.seconds()):
             self._commander.fly(velocity)
 
     def _do(self, act: Act, why: str) -> None:
@@ -281,17 +318,24 @@ class Link:
         status.connected = int(view.connected())
         status.armed, status.in_air = int(view.armed), int(view.in_air)
         status.mode, status.streaming = int(view.mode), int(self._stream.state)
-        status.unsafe = fit(self._desk.unsafe if self._desk else "", REASON_TEXT)
+        if self._desk:
+            status.unsafe = fit(self._desk.unsafe, REASON_TEXT)
+            status.speed_limits[:] = self._desk.speed_limits
+        if self._identity:
+            status.component = self._identity.component
+            status.firmware = fit(self._identity.firmware, FIRMWARE_TEXT)
         self._statuses.send(status)
         self._watch_silence(now)
+        if words := self._refusals.news(now, self._pump.refused, heard=bool(self._pump.heard_t)):
+            self._bus.event(Severity.WARNING, words)
 
     def _watch_silence(self, now: float) -> None:
-        silence = now - self._pump.heard_t
-        silent = bool(self._pump.heard_t) and silence > self._run.settings.safety.link_warning_s
+        seen = Conditions(silence=now - self._pump.heard_t if self._pump.heard_t else 0.0)
+        silent = _SILENT.holds(seen, self._run.settings.safety)
         if silent != self._silent:
             self._silent = silent
-            words = f"The vehicle is silent for {silence:.1f} s." if silent else "The vehicle is heard again."
-            self._bus.event(Severity.ALARM if silent else Severity.INFO, words)
+            words = _SILENT.say(seen) if silent else "The vehicle is heard again."
+            self._bus.event(_SILENT.severity if silent else Severity.INFO, words)
 
 
 def body(run: Run, bus: Bus, lifeline: Lifeline) -> None:
@@ -304,16 +348,22 @@ def body(run: Run, bus: Bus, lifeline: Lifeline) -> None:
         lambda level, text, _file, _line: _note_log(notes, int(level), text) if connected.is_set() else True
     )
     try:
-        transport = open_transport(parse_url(run.url))
-    except (UrlError, TransportError) as error:
+        signing = Signing(read_key(Path(run.signing_key)), time.time) if run.signing_key else None
+        transport = open_transport(parse_url(run.url), lambda severity, words: notes.put((severity, words)))
+    except (InputError, TransportError) as error:
         raise SystemExit(str(error)) from error
-    gate = Gate(run.settings.safety.setpoint_stale_s, time.monotonic)
+    sleep = Sleep()
+    gate = Gate(
+        run.settings.safety.setpoint_stale_s,
+        sleep.clock,
+        lambda words: notes.put((Severity.WARNING, words)),
+    )
     tlog = _open_tlog(run, notes)
-    pump = Pump(transport, gate, tlog, time.monotonic)
+    pump = Pump(transport, gate, tlog, time.monotonic, signing)
     mav = Mavsdk(Configuration.create_manual(_SYSTEM_ID, _COMPONENT_ID, always_send_heartbeats=True))
     pump.start(mav)
     connected.set()
-    link = Link(run, bus, mav, pump, gate, notes=notes)
+    link = Link(run, bus, mav, pump, gate, notes=notes, sleep=sleep)
     try:
         while lifeline.holds():
             link.turn()
@@ -338,8 +388,11 @@ def _open_tlog(run: Run, notes: Notes) -> TlogWriter | None:
 
 
 def _note_log(notes: Notes, level: int, text: str) -> bool:
-    """Keep MAVSDK's own lines off the terminal; its warnings become events."""
-    if level >= int(mavsdk.LogLevel.WARN):
+    """Keep MAVSDK's own lines off the terminal; its warnings become events.
+
+    Not those of the simulator's parameters: whose they are the trainee would not learn from a real vehicle.
+    """
+    if level >= int(mavsdk.LogLevel.WARN) and "(SIM_" not in text:
         notes.put((Severity.WARNING, f"MAVSDK: {text}"))
     return True
 

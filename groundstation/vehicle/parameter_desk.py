@@ -1,4 +1,4 @@
-"""The vehicle's parameters on the bus: commands come in, what was read goes out; are its failsafes safe?"""
+"""The vehicle's parameters on the bus: commands come in, what was read goes out; are those that are judged safe?"""
 
 from __future__ import annotations
 
@@ -8,12 +8,13 @@ from mavsdk import System
 
 from groundstation.bus import Bus
 from groundstation.clock import Every
+from groundstation.frames import Vector3
 from groundstation.messages import PARAMETER, PARAMETER_TEXT, Command, CommandKind, Parameter, fit
 from groundstation.vehicle.commander import Answer
-from groundstation.vehicle.failsafes import FAILSAFES, unsafe
+from groundstation.vehicle.gate import Gate
 from groundstation.vehicle.parameters import Parameters, cannot_be_set
+from groundstation.vehicle.profiles import Profile, speed_limits, unsafe_for
 
-_JUDGED = frozenset(each.name for each in FAILSAFES)
 _AGAIN_S = 1.0
 PARAMETER_COMMANDS = frozenset({CommandKind.PARAMETERS, CommandKind.SET_PARAMETER})
 
@@ -24,10 +25,13 @@ class ParameterDesk:
     Args:
         bus: Where what was read goes.
         system: The vehicle.
+        gate: Lets a parameter be set.
+        profile: Of its autopilot; None where nothing is known of it.
     """
 
-    def __init__(self, bus: Bus, system: System) -> None:
-        self._parameters = Parameters(system)
+    def __init__(self, bus: Bus, system: System, gate: Gate, profile: Profile | None) -> None:
+        self._profile = profile
+        self._parameters = Parameters(system, gate, profile.judged if profile else ())
         self._publisher = bus.publisher(PARAMETER)
         self._whole: dict[str, bool] = {}
         self._judged: dict[str, Parameter] = {}
@@ -36,8 +40,13 @@ class ParameterDesk:
 
     @property
     def unsafe(self) -> str:
-        """Why the vehicle's failsafes keep the hand from being coupled, or ""."""
-        return unsafe(self._parameters.failsafes)
+        """Why the vehicle's parameters keep the hand from being coupled, or ""."""
+        return unsafe_for(self._profile, self._parameters.judged)
+
+    @property
+    def speed_limits(self) -> Vector3:
+        """The largest speeds that the vehicle allows, m/s: around, up, down; 0 where that is not known."""
+        return speed_limits(self._profile, self._parameters.judged)
 
     def obey(self, command: Command, *, armed: bool) -> str:
         """Begin what is asked for; return why it is refused at once, or ""."""
@@ -64,10 +73,10 @@ class ParameterDesk:
             record = Parameter(t=now, value=read.value, whole=read.whole, count=read.total)
             record.name = fit(read.name, PARAMETER_TEXT)
             self._publisher.send(record)
-            if read.name in _JUDGED:
+            if read.name in self._parameters.judged:
                 self._judged[read.name] = record
         if self._again.due(now):
-            # Who has come meanwhile gets to know what the failsafes are.
+            # Who has come meanwhile gets to know what they are.
             for record in self._judged.values():
                 self._publisher.send(record)
         while not self._parameters.answers.empty():

@@ -16,9 +16,10 @@ from mavsdk.plugins.param import Param, ParamError, ParamResult
 
 from groundstation.messages import CommandKind
 from groundstation.vehicle.commander import Answer
-from groundstation.vehicle.failsafes import FAILSAFES
+from groundstation.vehicle.failsafes import Judged
+from groundstation.vehicle.gate import Gate
 
-# A failsafe that the vehicle did not tell is asked for again after this, s.
+# One that is judged and that the vehicle did not tell is asked for again after this, s.
 _AGAIN_S = 2.0
 # The process is given 3 s to end in, and has its log to close after this, s.
 _END_S = 1.5
@@ -44,23 +45,27 @@ class Read(NamedTuple):
 
 
 class Parameters:
-    """Reads and sets parameters on a thread; the failsafes are read first, and until they are known.
+    """Reads and sets parameters on a thread; those that are judged are read first, and until they are known.
 
     Args:
         system: The vehicle.
+        gate: Lets a parameter be set.
+        wanted: Those that are judged.
 
     Attributes:
         read, answers: What came since they were last emptied.
-        failsafes: Values of those that are judged, by name.
+        judged: Values of those that are judged, by name.
     """
 
-    def __init__(self, system: System) -> None:
+    def __init__(self, system: System, gate: Gate, wanted: tuple[Judged, ...]) -> None:
         self._param = Param(system)
+        self._gate = gate
+        self._wanted = {each.name: each for each in wanted}
         self._work: queue.SimpleQueue[Callable[[], None] | None] = queue.SimpleQueue()
         self._over = threading.Event()
         self.read: queue.SimpleQueue[Read] = queue.SimpleQueue()
         self.answers: queue.SimpleQueue[Answer] = queue.SimpleQueue()
-        self.failsafes: dict[str, float] = {}
+        self.judged: dict[str, float] = {}
         self._thread = threading.Thread(target=self._run, name="parameters", daemon=True)
         self._thread.start()
 
@@ -74,7 +79,7 @@ class Parameters:
 
     def forget(self) -> None:
         """The vehicle has started anew: what was read need not be true any more."""
-        self.failsafes = {}
+        self.judged = {}
         self._work.put(lambda: None)
 
     def close(self) -> bool:
@@ -88,7 +93,7 @@ class Parameters:
         next_look = 0.0
         while not self._over.is_set():
             if time.monotonic() >= next_look and self._missing():
-                self._read_failsafes()
+                self._read_judged()
                 next_look = time.monotonic() + _AGAIN_S
             try:
                 work = self._work.get(timeout=_AGAIN_S / 4 if self._missing() else None)
@@ -98,19 +103,19 @@ class Parameters:
                 work()
 
     def _missing(self) -> bool:
-        return len(self.failsafes) < len(FAILSAFES)
+        return len(self.judged) < len(self._wanted)
 
-    def _read_failsafes(self) -> None:
-        for failsafe in FAILSAFES:
-            if failsafe.name not in self.failsafes and not self._over.is_set():
+    def _read_judged(self) -> None:
+        for name, each in self._wanted.items():
+            if name not in self.judged and not self._over.is_set():
                 try:
-                    value = self._value(failsafe.name, whole=failsafe.whole)
+                    value = self._value(name, whole=each.whole)
                 except ParamError as error:
                     # It is asked for again; until then the hand is not coupled, and the screen says why.
                     if error.result is ParamResult.TIMEOUT:
                         return
                 else:
-                    self._take(Read(failsafe.name, value, failsafe.whole))
+                    self._take(Read(name, value, each.whole))
 
     def _fetch_all(self, number: int) -> None:
         every = self._param.get_all_params()
@@ -123,6 +128,7 @@ class Parameters:
 
     def _set(self, number: int, name: str, amount: float, *, whole: bool) -> None:
         kind = CommandKind.SET_PARAMETER
+        self._gate.allow_parameter(name)
         try:
             if whole:
                 self._param.set_param_int(name, int(amount))
@@ -139,8 +145,8 @@ class Parameters:
         return float(self._param.get_param_int(name) if whole else self._param.get_param_float(name))
 
     def _take(self, read: Read) -> None:
-        if any(read.name == each.name for each in FAILSAFES):
-            self.failsafes = self.failsafes | {read.name: read.value}
+        if read.name in self._wanted:
+            self.judged = self.judged | {read.name: read.value}
         self.read.put(read)
 
 

@@ -120,7 +120,9 @@ _PX4: dict[str, Spec] = {
 
 # The simulator's own. The channel per direction, UP toward the vehicle: delay and jitter, s; shares of frames
 # lost, doubled and reordered; bytes a second (0: no limit). A blackout of so many seconds from now, which goes back
-# to 0 by itself. The wind: where the air goes to, m/s, and the strength of its turbulence, m/s.
+# to 0 by itself. The wind: where the air goes to, m/s, and the strength of its turbulence, m/s. What happens once,
+# by `sim.momentary`: a gust with its peak, m/s, and how long it blows, s; so many seconds without GPS; a battery that
+# has only this share of its charge left.
 # None may close the channel for good: a ground station must be able to take it back. Bytes a second from 1 to
 # `LEAST_RATE` count as `LEAST_RATE`; whole silences are blackouts, which end.
 LEAST_RATE = 1000.0
@@ -134,6 +136,12 @@ _CHANNEL = {
 }
 _OWN: dict[str, Spec] = {
     **{f"SIM_{way}_{name}": spec for way in ("UP", "DN") for name, spec in _CHANNEL.items()},
+    "SIM_BAT_LEFT": Spec(0.0, 0.0, 1.0),
+    "SIM_GPS_LOST": Spec(0.0, 0.0, 60.0),
+    "SIM_GUST_E": Spec(0.0, -40.0, 40.0),
+    "SIM_GUST_N": Spec(0.0, -40.0, 40.0),
+    "SIM_GUST_S": Spec(0.0, 0.0, 60.0),
+    "SIM_GUST_U": Spec(0.0, -40.0, 40.0),
     "SIM_NET_BLACK": Spec(0.0, 0.0, 60.0),
     "SIM_WIND_E": Spec(0.0, -40.0, 40.0),
     "SIM_WIND_N": Spec(0.0, -40.0, 40.0),

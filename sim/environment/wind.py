@@ -63,6 +63,10 @@ class Air:
             wind = (wind[0] + east, wind[1] + north, wind[2] + up)
         return wind
 
+    def add(self, gust: Gust) -> None:
+        """Let another gust blow."""
+        self._gusts = (*self._gusts, gust)
+
     def _stir(self, p: Vector4, v: Vector4, dt: float) -> None:
         """Move the turbulent part on by `dt` seconds: its first axis lies along the mean wind, or east in calm."""
         x, y, z, _ = world_rates(p[3], v)

@@ -8,6 +8,7 @@ from sim.autopilot.parameters import NAMES
 from sim.channel import Channel
 from sim.conditions import BLACKOUT, IDEAL_BOTH_WAYS, BothWays, changed, publish
 from sim.mavlink.endpoint import Endpoint
+from sim.momentary import MOMENTARY
 from sim.process.framing import Splitter
 from sim.process.transport import Transport
 from sim.simulator import Simulator
@@ -131,12 +132,16 @@ class Vehicle:
         )
 
     def _restart(self) -> None:
-        """Begin anew at the start, with parameters and key as they are: an autopilot stores them."""
+        """Begin anew at the start, with parameters and key as they are, for an autopilot stores them.
+
+        What happens once is over with the restart.
+        """
         self._key = self._endpoint.key
         kept = self._parameters
         self.simulator = self._make()
         for name in NAMES:
-            self.simulator.autopilot.parameters.set(name, kept[name])
+            if name not in MOMENTARY:
+                self.simulator.autopilot.parameters.set(name, kept[name])
         self._begin()
 
     def _follow_parameters(self) -> None:

@@ -19,9 +19,9 @@ from groundstation.tui.rows import Row, span_of_time
 from groundstation.tui.screens.dialog import Typed
 from groundstation.tui.screens.page import Page
 from groundstation.tui.theme import MARKS, Tone
-from groundstation.vehicle.failsafes import FAILSAFES
+from groundstation.vehicle.profiles import PROFILES
 
-_JUDGES = {each.name: each.judge for each in FAILSAFES}
+_JUDGES = {each.name: each.judge for profile in PROFILES.values() for each in profile.judged}
 _TONES = {Severity.INFO: Tone.MUTED, Severity.WARNING: Tone.WARN, Severity.ALARM: Tone.FAULT}
 
 

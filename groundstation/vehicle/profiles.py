@@ -1,0 +1,65 @@
+"""What is asked of an autopilot and judged of it, as data: picked by its type, which its heartbeat tells."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import NamedTuple
+
+from groundstation.frames import Vector3
+from groundstation.messages import Autopilot
+from groundstation.vehicle import ardupilot, px4
+from groundstation.vehicle.failsafes import Judged, unsafe
+
+
+class Profile(NamedTuple):
+    """An autopilot.
+
+    Attributes:
+        name: For people.
+        judged: Parameters that are read and judged.
+        speeds: Names of those that bound the speed: around, up, down.
+        unit: That they are in, m/s.
+        modes: Custom modes, main and sub, that it is asked for.
+        tested: It has been flown with this program, if only a simulation of it.
+    """
+
+    name: str
+    judged: tuple[Judged, ...]
+    speeds: tuple[str, str, str]
+    unit: float
+    modes: frozenset[tuple[float, float]]
+    tested: bool
+
+    @property
+    def label(self) -> str:
+        """The name, and that it is untested where it is."""
+        return self.name if self.tested else f"{self.name} (untested)"
+
+
+PROFILES: Mapping[Autopilot, Profile] = {
+    Autopilot.PX4: Profile("PX4", px4.JUDGED, px4.SPEEDS, 1.0, px4.MODES, tested=True),
+    Autopilot.ARDUPILOT: Profile(
+        "ArduPilot", ardupilot.JUDGED, ardupilot.SPEEDS, 0.01, ardupilot.MODES, tested=False
+    ),
+}
+_UNKNOWN = (
+    "this autopilot is neither PX4 nor ArduPilot: what it does by itself is not known, so it is not flown"
+)
+
+
+def profile_of(autopilot: int) -> Profile | None:
+    """Return an autopilot's profile, or None where nothing is known of it."""
+    return next((profile for kind, profile in PROFILES.items() if kind == autopilot), None)
+
+
+def unsafe_for(profile: Profile | None, values: Mapping[str, float]) -> str:
+    """Return why a vehicle's parameters keep the hand from being coupled, or ""."""
+    return _UNKNOWN if profile is None else unsafe(profile.judged, values)
+
+
+def speed_limits(profile: Profile | None, values: Mapping[str, float]) -> Vector3:
+    """Return the largest speeds that a vehicle allows, m/s: around, up, down; 0 where that is not known."""
+    if profile is None:
+        return 0.0, 0.0, 0.0
+    around, up, down = (values.get(name, 0.0) * profile.unit for name in profile.speeds)
+    return around, up, down

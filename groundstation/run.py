@@ -9,7 +9,7 @@ from msgspec import Struct
 
 from groundstation.config import Settings
 from groundstation.run_folder import run_folder
-from groundstation.training.measures import Measures
+from groundstation.training.measures import Measures, Track
 from groundstation.training.mission import Mission
 
 RUN_FILE = "run.json"
@@ -36,6 +36,8 @@ class Run(Struct, frozen=True):
         config: The settings file, or "" where they are the defaults.
         par: What the flight is held against; None where nobody has flown the mission for reference.
         par_from: Whose it is, in words, or "".
+        ghost: The flight that is followed on map and in the viewer, or None.
+        guidance: How strongly the hand is guided towards the mission's way, 0 to 1.
     """
 
     run_id: str
@@ -55,6 +57,8 @@ class Run(Struct, frozen=True):
     config: str = ""
     par: Measures | None = None
     par_from: str = ""
+    ghost: Track | None = None
+    guidance: float = 0.0
 
     @property
     def hand(self) -> Path | None:

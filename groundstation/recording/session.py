@@ -17,6 +17,7 @@ from groundstation.recording.echoes import Echoes
 from groundstation.recording.feed import LiveFeed
 from groundstation.recording.file import FlightFile, RecordingError
 from groundstation.recording.gauges import Gauges
+from groundstation.recording.ghost import Ghost
 from groundstation.recording.incidents import Incidents
 from groundstation.recording.item import Item
 from groundstation.recording.motion import Motion
@@ -64,6 +65,7 @@ class Translator:
         self._echoes = Echoes(start)
         self._gauges = Gauges(start, run.settings.shield)
         self._incidents = Incidents(start)
+        self._ghost = Ghost(start, run.ghost)
         self._device = b""
 
     def opening(self) -> Iterator[Item]:
@@ -83,6 +85,7 @@ class Translator:
         yield from self._echoes.chunks(batch)
         yield from self._gauges.chunks(batch)
         yield from self._incidents.chunks(batch)
+        yield from self._ghost.chunks(batch)
         for report in batch.of(DEVICE_REPORT):
             if report.present and (known := bytes(report)[_AFTER_TIME:]) != self._device:
                 self._device = known

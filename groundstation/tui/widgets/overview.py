@@ -16,6 +16,7 @@ from groundstation.tui.camera import Solids
 from groundstation.tui.canvas import Canvas
 from groundstation.tui.directions import title, way_of
 from groundstation.tui.frame import Frame
+from groundstation.tui.ghosts import draw_ghost
 from groundstation.tui.inside import camera, draw_inside
 from groundstation.tui.rows import Row, Span, quantity
 from groundstation.tui.theme import Tone
@@ -154,6 +155,7 @@ class Overview(Instrument):
         if frame.guide is not None and (way := way_of(frame)) is not None:
             goals.draw_goal(canvas, view, frame.guide, way.distance)
         moving.draw_trail(canvas, view, frame.track.points(), frame.now)
+        draw_ghost(canvas, view, frame, named=canvas.columns >= _NAMES_FROM)
         _draw_echoes(canvas, view, frame, seen)
         if pilot is not None:
             _draw_led(canvas, view, frame, pilot, seen)

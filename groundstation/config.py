@@ -212,7 +212,7 @@ class Training(Struct, frozen=True, forbid_unknown_fields=True):
     """What helps who learns.
 
     Attributes:
-        guidance: How strongly the hand is guided to the mission's way, 0 to 1; *auto* fades as the pilot's skill grows.
+        guidance: How strongly the hand is guided to the mission's way, 0 to 1; *auto* fades as skill grows.
     """
 
     guidance: Literal["auto"] | Share = "auto"

@@ -130,7 +130,7 @@ class Cues(Struct, frozen=True, forbid_unknown_fields=True):
     guard: Gain = 2.5
     part_limit: Limit = 6.0
     guidance: Gain = 6.0
-    tube: Limit = 0.25
+    tube: Limit = 0.15
     guidance_limit: Annotated[float, Meta(gt=0, le=0.5)] = 0.3
 
 

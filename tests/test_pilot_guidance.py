@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from itertools import pairwise
-from math import dist, hypot, inf, nan, pi
+from math import dist, hypot, inf, isnan, nan, pi
 
 import pytest
 from haptic_loop import DEVICE, DT, LOOSE
@@ -104,10 +104,31 @@ def test_where_a_way_crosses_itself_the_other_branch_does_not_pull() -> None:
     assert segments_of((*path, path[-1]))[-1].station == pytest.approx(18.0)
 
 
+def test_a_way_that_ends_where_it_begins_is_begun_at_its_beginning() -> None:
+    path = ((0.0, 0.0, 2.0), (6.0, 0.0, 2.0), (6.0, 5.0, 2.0), (0.0, 5.0, 2.0), (0.0, 0.0, 2.0))
+    guidance, station = Guidance(path, TUBE, 0.1), NOWHERE
+    for step in range(61):
+        station, force = guidance.towards(station, at(step / 10.0, 0.01, 2.0), ZERO4)
+        assert station == pytest.approx(step / 10.0, abs=0.02)
+        assert force == ZERO3
+
+
+def test_who_has_gone_far_from_the_way_is_guided_to_what_is_nearest_again() -> None:
+    path = ((0.0, 0.0, 2.0), (20.0, 0.0, 2.0), (20.0, 20.0, 2.0))
+    guidance, station = Guidance(path, TUBE, 0.1), NOWHERE
+    # Across the corner.
+    for step in range(201):
+        along = step / 200.0
+        station, force = guidance.towards(station, at(5.0 + 15.0 * along, 15.0 * along, 2.0), ZERO4)
+    assert station == pytest.approx(35.0)
+    assert force == ZERO3
+
+
 @given(st.lists(places, min_size=2, max_size=6), places)
 def test_a_station_lies_on_the_way(path, place) -> None:
     assume(all(dist(a, b) > 0.01 for a, b in pairwise(path)))
     station, _ = Guidance(path, TUBE, 0.1).towards(NOWHERE, (*place, 0.0), ZERO4)
+    assume(not isnan(station))
     assert 0.0 <= station <= sum(dist(a, b) for a, b in pairwise(path)) + 1e-6
 
 

@@ -8,6 +8,8 @@ With d from where the vehicle will be in a moment to the nearest point of the pa
 It turns what the hand asks for and never asks for more: it is nothing while the handle is at its centre, and of it
 what leads further outward along the handle's own displacement is left out. So it moves no vehicle without the hand.
 The nearest point is looked for near the one before only: where a path crosses itself, the other branch does not pull.
+At first, and where the vehicle is far from there, all of the path is looked at, and of equally near pieces the first
+counts: a path that leads round begins where it ends.
 """
 
 from __future__ import annotations
@@ -30,6 +32,8 @@ from groundstation.pilot.surroundings import Surroundings
 AHEAD_S = 0.4
 # So far back and on along the path from the nearest point the next one is looked for, m.
 _BACK_M, _ON_M = 1.5, 2.5
+# Further than this from it the vehicle is somewhere else, and a later piece must be nearer by that much, m.
+_LOST_M, _NEARER_M = 2.0, 0.5
 # Of its travel the handle is at its centre within this, and guided in full from twice as far on, as a share.
 CENTRE = 0.05
 _SHORTEST_M = 1e-6
@@ -109,18 +113,20 @@ class Guidance:
             position[1] + AHEAD_S * velocity[1],
             position[2] + AHEAD_S * velocity[2],
         )
-        nearest, best, (u, v, w) = station, math.inf, ZERO3
+        nearest, away, (u, v, w) = station, math.inf, ZERO3
+        nearer = _NEARER_M if math.isnan(station) else 0.0
         for begin, (a, b, c), (i, j, k), length in self._segments:
             low, high = max(0.0, station - _BACK_M - begin), min(length, station + _ON_M - begin)
-            # NaN is greater than nothing: before there was a station, all of the path is looked at.
+            # NaN is greater than nothing: without a station all of the path is looked at.
             if low > high:
                 continue
             share = min(max((x - a) * i + (y - b) * j + (z - c) * k, low), high)
             p, q, r = a + share * i - x, b + share * j - y, c + share * k - z
-            distance = p * p + q * q + r * r
-            if distance < best:
-                nearest, best, (u, v, w) = begin + share, distance, (p, q, r)
-        away = sqrt(best)
+            distance = sqrt(p * p + q * q + r * r)
+            if distance < away - nearer:
+                nearest, away, (u, v, w) = begin + share, distance, (p, q, r)
+        if away > _LOST_M:
+            nearest = NOWHERE
         stiffness, radius, limit = self._tube
         if not radius < away < math.inf:
             return nearest, ZERO3

@@ -40,7 +40,7 @@ def fly(asked: argparse.Namespace) -> int:
         InputError: Something asked for cannot be.
     """
     _check(asked)
-    run = plan(asked)
+    run = accompanied(plan(asked), asked)
     note(asked)
     with started(run, asked) as (bus, supervisor):
         if asked.headless:
@@ -118,6 +118,29 @@ def plan(asked: argparse.Namespace) -> Run:
         par=par,
         par_from=par_from,
     )
+
+
+def accompanied(run: Run, asked: argparse.Namespace) -> Run:
+    """Return a run with the ghost that is followed, and with guidance as strong as the pilot needs it.
+
+    By itself it guides only a hand that trains on the simulated vehicle, and a scripted hand needs neither.
+
+    Raises:
+        InputError: What the pilot has flown cannot be read.
+    """
+    if run.mission is None:
+        return run
+    from groundstation.progress.company import flown_by, ghost_of, guidance_of
+    from groundstation.training.curriculum import lessons
+
+    flights, best = flown_by(run.pilot, run.mission, asked.logs)
+    wanted = run.settings.training.guidance if asked.guidance is None else asked.guidance
+    if wanted == "auto":
+        trains = run.simulated and not asked.headless
+        wanted = guidance_of(run.mission, flights, [each.mission for each in lessons()]) if trains else 0.0
+    asked_ghost = "off" if asked.headless and not asked.ghost else asked.ghost
+    ghost = ghost_of(asked_ghost, run.mission, Path(run.mission_path), best)
+    return msgspec.structs.replace(run, ghost=ghost, guidance=wanted)
 
 
 def _check(asked: argparse.Namespace) -> None:

@@ -48,6 +48,18 @@ def add_flight(parser: argparse.ArgumentParser) -> None:
         help="your own controller; see docs/control.md (default: the paper's)",
     )
     flight.add_argument(
+        "--ghost",
+        choices=("best", "reference", "off"),
+        default="",
+        help="whose flight to fly beside (default: your best, else the reference operator's)",
+    )
+    flight.add_argument(
+        "--guidance",
+        type=share,
+        metavar="SHARE",
+        help="how strongly the hand is guided to the mission's way, 0 to 1 (default: fades as you learn)",
+    )
+    flight.add_argument(
         "--headless", action="store_true", help="no screen: the scripted hand flies the mission"
     )
     flight.add_argument(
@@ -100,3 +112,18 @@ def add_recording(parser: argparse.ArgumentParser) -> None:
     live.add_argument(
         "--viewer", metavar="HOST:PORT", help="show it in a viewer that runs already, here or elsewhere"
     )
+
+
+def share(text: str) -> float:
+    """Read a number from 0 to 1.
+
+    Raises:
+        argparse.ArgumentTypeError: It is none.
+    """
+    try:
+        value = float(text)
+    except ValueError:
+        value = -1.0
+    if not 0.0 <= value <= 1.0:
+        raise argparse.ArgumentTypeError(f"{text}: give a number from 0 to 1")
+    return value

@@ -192,6 +192,7 @@ def _hand() -> rrb.Grid:
 def _feel() -> rrb.Vertical:
     plots = rrb.Grid(
         _plot("Force by cue, N", schema.CUE_SIZES.path),
+        _plot("Guidance to the mission's way, N", schema.GUIDANCE_CUE.path),
         _plot("Energy of the hand's port, J", schema.HANDLE_ENERGY.path),
         _plot("K₁ in effect, 1/s, and phase margin, rad", schema.K1.path, schema.PHASE_MARGIN.path),
         _plot("Round trip, s, and what it leaves, share", schema.RECKONED.path, schema.SHARES.path),

@@ -18,6 +18,7 @@ from groundstation.recording.echoes import Echoes
 from groundstation.recording.feed import LiveFeed
 from groundstation.recording.file import FlightFile, RecordingError
 from groundstation.recording.gauges import Gauges
+from groundstation.recording.ghost import Ghost
 from groundstation.recording.incidents import Incidents
 from groundstation.recording.item import Item
 from groundstation.recording.motion import Motion
@@ -55,6 +56,7 @@ class Translator:
         self._gauges = Gauges(start, run.settings.shield)
         self._incidents = Incidents(start)
         self._story = Story(start)
+        self._ghost = Ghost(start, run.ghost)
         self._device = b""
 
     def opening(self) -> Iterator[Item]:
@@ -75,6 +77,7 @@ class Translator:
         yield from self._gauges.chunks(batch)
         yield from self._incidents.chunks(batch)
         yield from self._story.chunks(batch)
+        yield from self._ghost.chunks(batch)
         for report in batch.of(DEVICE_REPORT):
             if report.present and (known := bytes(report)[_AFTER_TIME:]) != self._device:
                 self._device = known

@@ -18,6 +18,7 @@ from groundstation.recording.feed import LiveFeed
 from groundstation.recording.file import FlightFile, RecordingError
 from groundstation.recording.gauges import Gauges
 from groundstation.recording.incidents import Incidents
+from groundstation.recording.interventions import Interventions
 from groundstation.recording.item import Item
 from groundstation.recording.motion import Motion
 from groundstation.recording.parts import part_path
@@ -64,6 +65,7 @@ class Translator:
         self._echoes = Echoes(start)
         self._gauges = Gauges(start, run.settings.shield)
         self._incidents = Incidents(start)
+        self._interventions = Interventions(start)
         self._device = b""
 
     def opening(self) -> Iterator[Item]:
@@ -83,6 +85,7 @@ class Translator:
         yield from self._echoes.chunks(batch)
         yield from self._gauges.chunks(batch)
         yield from self._incidents.chunks(batch)
+        yield from self._interventions.chunks(batch)
         for report in batch.of(DEVICE_REPORT):
             if report.present and (known := bytes(report)[_AFTER_TIME:]) != self._device:
                 self._device = known

@@ -28,7 +28,9 @@ _TRAILS: Overrides = {
 }
 _AXIS = rrb.TimeAxis(link=rrb.components.LinkAxis.LinkToGlobal)
 # Rerun shows them by their paths' alphabet.
-_HAPPENED = (lanes.ALERT, lanes.GUARD, lanes.MODE, lanes.PHASE, lanes.POINTS, lanes.STAGE, lanes.VEHICLE)
+_HAPPENED = (
+    lanes.ALERT, lanes.GUARD, lanes.INTERVENTION, lanes.MODE, lanes.PHASE, lanes.POINTS, lanes.STAGE, lanes.VEHICLE,
+)  # fmt: skip
 # The velocities share their colours: one legend is enough.
 _FIRST = "Forward velocity"
 # From above: what is shown around a mission, m, and how wide and deep an eye sees, m a metre of its height.

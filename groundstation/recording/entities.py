@@ -9,6 +9,7 @@ REASON = "/pilot/reason"
 GUARDED = "/pilot/guarded_by"
 UNSAFE = "/vehicle/unsafe"
 PARAMETERS = "/vehicle/parameters"
+INTERVENTIONS = "/interventions"
 # Static text of the whole flight.
 ABOUT = "/about"
 

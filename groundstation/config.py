@@ -160,6 +160,12 @@ class Shield(Struct, frozen=True, forbid_unknown_fields=True):
     ceiling: Annotated[float, Meta(ge=0, le=1_000)] = 0.0
     fence: Annotated[float, Meta(ge=0, le=100_000)] = 0.0
 
+    def __post_init__(self) -> None:
+        if 0.0 < self.ceiling <= self.floor:
+            raise ValueError(
+                f"the ceiling, {self.ceiling}, is not above the floor, {self.floor}; raise one or lower the other"
+            )
+
 
 class Link(Struct, frozen=True, forbid_unknown_fields=True):
     """How gains and speed fall as the link worsens; between good and poor they fall evenly.

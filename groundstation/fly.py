@@ -5,7 +5,6 @@ from __future__ import annotations
 import argparse
 import contextlib
 import datetime
-import getpass
 import os
 import signal
 from collections.abc import Generator
@@ -18,11 +17,14 @@ from groundstation.bus import Bus
 from groundstation.config import Settings, check_flown_by_rate, load_settings, usual_file
 from groundstation.connecting import note
 from groundstation.errors import InputError
+from groundstation.login import login_name
 from groundstation.processes import Supervisor, free_port, running
 from groundstation.run import Run
 from groundstation.run_folder import new_run_id, run_folder, sweep_dead_runs
 from groundstation.terminal import has_screen, terminal_path
 from groundstation.training.mission import Mission, find_mission, load_mission
+from groundstation.training.par import par_in
+from groundstation.training.reference import load_reference
 from groundstation.vehicle.signing import read_key
 from groundstation.vehicle.transport import parse_url
 from sim.scenario import VehicleChoice
@@ -91,6 +93,7 @@ def plan(asked: argparse.Namespace) -> Run:
     now = datetime.datetime.now().astimezone()
     run_id = new_run_id()
     device = _device(asked, run_id)
+    par, par_from = par_in(load_reference(mission, path) if mission and path else None, asked.seed)
     if asked.device:
         _check_device(device, settings)
     return Run(
@@ -104,7 +107,7 @@ def plan(asked: argparse.Namespace) -> Run:
         log=str(log_stem(asked.logs, now, mission.name if mission else "flight")),
         viewer_url=_viewer(asked),
         controller=asked.controller,
-        pilot=_pilot(asked.pilot),
+        pilot=_pilot(asked),
         seed=asked.seed,
         terminal="" if asked.headless or asked.plain else terminal_path(),
         started=now.isoformat(timespec="milliseconds"),
@@ -112,6 +115,8 @@ def plan(asked: argparse.Namespace) -> Run:
         if asked.config or usual_file()
         else "",
         signing_key=str(asked.signing_key.resolve()) if asked.signing_key else "",
+        par=par,
+        par_from=par_from,
     )
 
 
@@ -237,14 +242,11 @@ def _device(asked: argparse.Namespace, run_id: str) -> str:
     return asked.device
 
 
-def _pilot(named: str | None) -> str:
-    """Return who flies: as named, else who is logged in, where the system knows."""
-    if named is not None:
-        return named.strip()
-    try:
-        return getpass.getuser()
-    except (KeyError, OSError):
-        return ""
+def _pilot(asked: argparse.Namespace) -> str:
+    """Return who flies: as named, else who is logged in; the scripted hand is nobody unless it is given a name."""
+    if asked.pilot is not None:
+        return asked.pilot.strip()
+    return "" if asked.headless else login_name()
 
 
 def log_stem(folder: Path, now: datetime.datetime, name: str) -> Path:

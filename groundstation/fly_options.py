@@ -93,7 +93,7 @@ def add_recording(parser: argparse.ArgumentParser) -> None:
     """Add settings, and where the recording goes."""
     general = parser.add_argument_group("settings and recording")
     general.add_argument("--config", type=Path, metavar="FILE", help="settings (default: groundstation.toml)")
-    general.add_argument("--pilot", metavar="NAME", help="who flies (default: who is logged in)")
+    general.add_argument("--pilot", metavar="NAME", help="who flies (default: who is logged in; --headless: nobody)")
     general.add_argument("--logs", type=Path, default=Path("logs"), metavar="DIR", help="recordings go here")
     live = general.add_mutually_exclusive_group()
     live.add_argument("--rerun", action="store_true", help="show the flight live in the Rerun viewer")

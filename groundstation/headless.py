@@ -20,6 +20,7 @@ from groundstation.errors import InputError
 from groundstation.headless_hand import OperatorHand
 from groundstation.messages import CommandAnswer, CommandKind, FlightMode, Health, Phase
 from groundstation.processes import Supervisor
+from groundstation.progress.keeper import Keeper
 from groundstation.run import Run
 from groundstation.training.director import Director, Stage
 from groundstation.training.follower import MissionFollower
@@ -240,6 +241,8 @@ def fly_headless(
     view = outing.fly(flight, hand)
     supervisor.stop()
     outing.follower.finish()
+    for words in Keeper(run, outing.follower.attempts).close():
+        sys.stderr.write(f"groundstation: {words}\n")
     return summarise(run, outing.follower.measurer, view.servo, flight.failure, as_json=as_json)
 
 
@@ -261,7 +264,7 @@ class Outing:
     def __init__(self, run: Run, mission: Mission, bus: Bus, supervisor: Supervisor) -> None:
         self._bus, self._supervisor = bus, supervisor
         self._console = Console(bus, "headless")
-        self.follower = MissionFollower(mission, bus)
+        self.follower = MissionFollower(mission, bus, run.par)
         self.director = self.follower.director
         self.sender = StickSender(str(run.hand))
 

@@ -25,6 +25,7 @@ REASON_TEXT = 160
 NAME_TEXT = 49
 FIRMWARE_TEXT = 24
 PARAMETER_TEXT = 17
+PART_TEXT = 16
 HAPPENING_TEXT = 200
 # Sectors of the ring in `Ranges`, as many as MAVLink's OBSTACLE_DISTANCE has room for.
 RING_SECTORS = 72
@@ -683,6 +684,32 @@ class MissionProgress(Record):
     )
 
 
+class PointsLost(Record):
+    """A moment in which a flight lost points, told when it has landed (`t` is that of the moment).
+
+    Attributes:
+        until: When it ended, s.
+        points: Of the score's 100.
+        position: Where the vehicle was, world, m.
+        part: Of the score.
+        text: What happened.
+    """
+
+    until: float
+    points: float
+    position: ctypes.Array[_F64]
+    part: bytes
+    text: bytes
+    _fields_ = (
+        ("t", _F64),
+        ("until", _F64),
+        ("points", _F64),
+        ("position", _F64 * 3),
+        ("part", ctypes.c_char * PART_TEXT),
+        ("text", ctypes.c_char * EVENT_TEXT),
+    )
+
+
 class Heartbeat(Record):
     """A process is alive and its loop turns, 10 Hz."""
 
@@ -731,6 +758,7 @@ EVENT = Topic("event", Event, depth=256, history=32)
 SERVO_REPORT = Topic("servo_report", ServoReport)
 DEVICE_REPORT = Topic("device_report", DeviceReport, history=16)
 MISSION_PROGRESS = Topic("mission_progress", MissionProgress)
+POINTS_LOST = Topic("points_lost", PointsLost, history=0)
 HEARTBEAT = Topic("heartbeat", Heartbeat, history=0)
 
 

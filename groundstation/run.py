@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import datetime
 from pathlib import Path
 
 import msgspec
@@ -13,6 +14,7 @@ from groundstation.training.measures import Measures
 from groundstation.training.mission import Mission
 
 RUN_FILE = "run.json"
+_LONGEST_START_S = 60.0
 
 
 class Run(Struct, frozen=True):
@@ -97,3 +99,15 @@ def run_file(run_id: str) -> Path:
 def read_run(path: Path) -> Run:
     """Read a run file back."""
     return msgspec.json.decode(path.read_bytes(), type=Run)
+
+
+def start_of(started: str, wall: datetime.datetime, monotonic: float) -> float:
+    """Return when a run was started on the monotonic clock, s.
+
+    Args:
+        started: Wall-clock time of the start, ISO 8601.
+        wall: Wall-clock time now.
+        monotonic: Monotonic time now, s; also the answer where the wall clock was put right in between.
+    """
+    age = (wall - datetime.datetime.fromisoformat(started)).total_seconds()
+    return monotonic - age if 0.0 <= age <= _LONGEST_START_S else monotonic

@@ -18,6 +18,7 @@ from groundstation.messages import (
     OBSTACLES,
     PARAMETER,
     PILOT_STATE,
+    POINTS_LOST,
     SERVO_REPORT,
     SETPOINT,
     TICK_INPUTS,
@@ -45,6 +46,7 @@ TOPICS: tuple[Topic[Any], ...] = (
     SERVO_REPORT,
     DEVICE_REPORT,
     MISSION_PROGRESS,
+    POINTS_LOST,
     HEARTBEAT,
 )
 

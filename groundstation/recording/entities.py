@@ -4,6 +4,7 @@ from __future__ import annotations
 
 EVENTS = "/events"
 COMMANDS = f"{EVENTS}/commands"
+SCORE = f"{EVENTS}/score"
 REASON = "/pilot/reason"
 GUARDED = "/pilot/guarded_by"
 UNSAFE = "/vehicle/unsafe"
@@ -31,6 +32,7 @@ STOP = "/world/stop"
 PROSPECT = "/world/prospect"
 ECHOES = "/world/echoes"
 INCIDENTS = "/world/incidents"
+LOSSES = "/world/points_lost"
 # Length of the arrow that shows the force on the hand, m a newton.
 ARROW_M_PER_N = 0.25
 
@@ -59,4 +61,5 @@ SCENE: tuple[tuple[str, str], ...] = (
     (PROSPECT, "a line from where it is seen through both, while engaged"),
     (ECHOES, "what the vehicle's own distance sensors see, as points"),
     (INCIDENTS, "collisions and alarms, as points where the vehicle was then"),
+    (LOSSES, "the moments that cost points, where the vehicle was then, once it has landed"),
 )

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from enum import Enum
 
 from groundstation.training.director import Stage
+from groundstation.training.score import UNFINISHED, YARDSTICKS
 
 
 class Tone(Enum):
@@ -134,6 +135,15 @@ ALERT = Lane(
     "What went wrong: each warning, collision and alarm for half a second",
     ((QUIET, Tone.IDLE), (WARNING, Tone.WARNING), (COLLISION, Tone.FAULT), (ALARM, Tone.FAULT)),
 )
+POINTS = Lane(
+    "/state/points",
+    "Where points were lost, by part of the score, once the vehicle has landed",
+    (
+        (QUIET, Tone.IDLE),
+        *((yard.part, Tone.WARNING) for yard in YARDSTICKS),
+        (UNFINISHED, Tone.FAULT),
+    ),
+)
 LANES: tuple[Lane, ...] = (
-    ALERT, PHASE, MODE, STREAM, VEHICLE, DEVICE_STATE, STAGE, MAPPING, PRESET, GUARD, COMPENSATION,
+    ALERT, POINTS, PHASE, MODE, STREAM, VEHICLE, DEVICE_STATE, STAGE, MAPPING, PRESET, GUARD, COMPENSATION,
 )  # fmt: skip

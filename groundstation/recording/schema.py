@@ -299,6 +299,14 @@ CLEARANCE = Quantity(
 LEGS = Quantity("/mission/legs", ("flown", "of"), "legs", "mission", "How far along the route")
 COLLISIONS = Quantity("/mission/collisions", ("collisions",), "contacts", "mission", "With obstacles, so far")
 
+LOST = Quantity(
+    "/mission/lost",
+    ("points", "length"),
+    "of 100, s",
+    "once landed",
+    "What a moment cost of the score, and how long it was",
+)
+
 QUANTITIES: tuple[Quantity, ...] = (
     HANDLE_POSITION, HANDLE_VELOCITY, SAMPLE_AGE, HANDLE_FORCE, HANDLE_ENERGY, HANDLE_BUTTONS,
     HANDLE_READY, CENTRED, SETPOINT_NUMBER,
@@ -312,7 +320,7 @@ QUANTITIES: tuple[Quantity, ...] = (
     STATE_AGE, HANDLE_AGE, ROUND_TRIP, RECKONED, SILENCE,
     LOSS, GATE,
     SERVO_RATE, SERVO_LATE, SERVO_RUN, REALTIME, SERVO_TIME, SERVO_TICKS, TICK, KNOWN, LIMITS,
-    TARGET_DISTANCE, CLEARANCE, LEGS, COLLISIONS,
+    TARGET_DISTANCE, CLEARANCE, LEGS, COLLISIONS, LOST,
     COMMANDED, ANSWERED,
 )  # fmt: skip
 

@@ -272,7 +272,7 @@ def fly_plainly(run: Run, bus: Bus, supervisor: Supervisor) -> int:
     from drivers.stick import StickSender as Sender
 
     stick = Sender(str(run.hand)) if run.hand else None
-    follower = MissionFollower(run.mission, bus) if run.mission else None
+    follower = MissionFollower(run.mission, bus, run.par) if run.mission else None
     hand = Hand() if stick is not None else None
     coach = LiveCoach(run, lambda words: bus.event(Severity.INFO, words))
     flight = PlainFlight(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import datetime
 from dataclasses import replace
+from pathlib import Path
 
 import msgspec
 import pytest
@@ -53,7 +54,9 @@ def desk(tmp_path) -> Desk:
 
 
 def at(folder) -> Desk:
-    return Desk(folder, [lesson._replace(path=folder / lesson.path.name) for lesson in COURSE], lambda: TODAY)
+    return Desk(
+        folder, [lesson._replace(path=Path("course") / lesson.path.name) for lesson in COURSE], lambda: TODAY
+    )
 
 
 def lines(app) -> list[str]:
@@ -152,7 +155,6 @@ def flight_app(desk, seconds=0.3, *, simulated=True) -> FlightApp:
         follower=follower,
         desk=desk,
         clock=lambda: START,
-        **more,
     )
 
 

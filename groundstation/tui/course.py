@@ -10,9 +10,9 @@ from groundstation.progress.skills import Record
 from groundstation.progress.words import NEXT, PASSED, counted, due_words, hours, mark, number, trend
 from groundstation.tui.theme import Tone
 
-_NAME, _TREND, _DUE = 12, 8, 20
+_NAME, _TREND, _DUE = 12, 8, 28
 # From here on the title stands beside the name.
-_WIDE = 90
+_WIDE = 100
 
 Styles = dict[Tone, Style]
 

@@ -8,7 +8,7 @@ from rich.text import Text
 from textual import on
 from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
-from textual.containers import Container, Vertical
+from textual.containers import Container, Vertical, VerticalScroll
 from textual.message import Message
 from textual.widgets import OptionList, Static
 from textual.widgets.option_list import Option
@@ -20,8 +20,7 @@ from groundstation.tui.theme import Tone, styles_of
 from groundstation.tui.wish import Wish
 
 _LONGEST_NAME = 40
-# Border and padding of a pane, and the scroll bar beside the list.
-_AROUND = 6
+_LEAST_WIDTH = 40
 
 
 class SchoolView(Vertical):
@@ -35,16 +34,22 @@ class SchoolView(Vertical):
         report: Who is shown.
     """
 
+    # What stands beside what depends on the screen.
+    SCOPED_CSS = False
     DEFAULT_CSS = """
     SchoolView { height: 1fr; }
+    SchoolView Static { text-wrap: nowrap; text-overflow: ellipsis; }
     SchoolView #standing { height: 2; padding: 0 1; }
     SchoolView #heads { height: 1; padding: 0 2; }
     SchoolView #rooms { height: 1fr; layout: vertical; }
-    SchoolView OptionList { height: 1fr; border: round $frame; background: $ink; padding: 0 1; }
+    SchoolView OptionList { height: 1fr; border: round $frame; background: $ink; padding: 0 1; text-wrap: nowrap;
+        border-title-color: $muted; }
     SchoolView OptionList:focus { border: round $vehicle; background-tint: $ink 0%; }
     SchoolView OptionList > .option-list--option-highlighted { background: $frame; text-style: none; }
     SchoolView OptionList:focus > .option-list--option-highlighted { background: $frame; text-style: none; }
-    SchoolView #about { height: 9; border: round $frame; background: $ink; padding: 0 1; overflow-y: auto; }
+    SchoolView #about { height: 9; border: round $frame; border-title-color: $muted; background: $ink; padding: 0 1; }
+    SchoolView #about:focus { border: round $vehicle; border-title-color: $text; }
+    SchoolView #words { height: auto; }
     .-beside SchoolView #rooms { layout: horizontal; }
     .-beside SchoolView #course { width: 58%; height: 1fr; }
     .-beside SchoolView #about { width: 42%; height: 1fr; }
@@ -73,7 +78,8 @@ class SchoolView(Vertical):
         yield Static(id="heads")
         with Container(id="rooms"):
             yield OptionList(id="course")
-            yield Static(id="about", markup=False)
+            with VerticalScroll(id="about"):
+                yield Static(id="words", markup=False)
 
     def on_mount(self) -> None:
         """Show the pilot, with what comes next chosen."""
@@ -105,10 +111,12 @@ class SchoolView(Vertical):
     def tell(self) -> None:
         """Tell about the mission that is chosen."""
         name = self.chosen
-        about = self.query_one("#about", Static)
+        about = self.query_one("#about", VerticalScroll)
         if name:
-            about.border_title = f"{name}: Enter flies it"
-            about.update("\n".join(self._desk.briefing(name, max(about.size.width - 2, 40))[2:]))
+            about.border_title = f"{name}: Enter flies it, Tab reads on"
+            width = max(about.size.width - 3, _LEAST_WIDTH)
+            self.query_one("#words", Static).update("\n".join(self._desk.briefing(name, width)[2:]))
+            about.scroll_home(animate=False)
 
     @on(OptionList.OptionSelected, "#course")
     def take(self) -> None:
@@ -138,7 +146,7 @@ class SchoolView(Vertical):
         styles, course = styles_of(self.app.theme), self.query_one("#course", OptionList)
         standing = self.report.standing
         kept = self.chosen or (standing.next.mission if standing.next else "")
-        width = course.size.width - _AROUND + 2
+        width = max(course.size.width - 2, 0)
         self.query_one("#standing", Static).update(head(self.report, styles))
         self.query_one("#heads", Static).update(columns(width, styles))
         course.clear_options()

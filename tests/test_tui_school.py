@@ -141,6 +141,18 @@ def test_the_picture(snap_compare, desk, size):
 # Beside a flight.
 
 
+@pytest.mark.parametrize("size", SIZES, ids=lambda size: f"{size[0]}x{size[1]}")
+def test_the_page(snap_compare, desk, size):
+    app = flight_app(desk)
+
+    async def look(session) -> None:
+        await opened(app, session)
+        await session.press("down")
+        await session.pause()
+
+    assert snap_compare(app, terminal_size=size, run_before=look)
+
+
 def flight_app(desk, seconds=0.3, *, simulated=True) -> FlightApp:
     run = msgspec.structs.replace(canned_run(simulated=simulated), pilot="Ann")
     flight = CannedFlight(run)

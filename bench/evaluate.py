@@ -57,7 +57,7 @@ def one_core(rate: float, flights: int) -> list[float]:
 def together(jobs: int, flights: int) -> float:
     """Return the virtual seconds a second of the wall clock that so many processes fly."""
     began, flown = 0.0, 0.0
-    for result in fly_here([task(250.0, seed) for seed in range(flights)], jobs):
+    for result in fly_here(fly, [task(250.0, seed) for seed in range(flights)], jobs):
         if began:
             flown += result.outcome.flown
         else:

@@ -85,8 +85,13 @@ class Waker:
         self._wait = listener.timed_wait
 
     def wait(self, seconds: float) -> None:
-        """Return when a record was sent since the last call, or after `seconds`."""
-        self._wait(iox2.Duration.from_secs_f64(seconds))
+        """Return when a record was sent since the last call, after `seconds`, or when a signal came."""
+        try:
+            self._wait(iox2.Duration.from_secs_f64(seconds))
+        except iox2.ListenerWaitError as error:
+            # A process that is told to end must get to its end, which is what it waits for no longer.
+            if "InterruptSignal" not in str(error):
+                raise
 
 
 class Bus:

@@ -21,6 +21,7 @@ Gains4 = tuple[Gain, Gain, Gain, Gain]
 Gains3 = tuple[Gain, Gain, Gain]
 Limits4 = tuple[Limit, Limit, Limit, Limit]
 Limits3 = tuple[Limit, Limit, Limit]
+Share = Annotated[float, Meta(ge=0, le=1)]
 Button = Annotated[int, Meta(ge=-1, le=31)]
 
 CONFIG_NAME = "groundstation.toml"
@@ -68,6 +69,9 @@ class Buttons(Struct, frozen=True, forbid_unknown_fields=True):
         turn_left, turn_right: Turn at the full yaw rate while held, for a handle without rotation.
         release: Uncouples the hand: the vehicle holds.
         hold, land, return_home: Command that, as the keys do.
+        enable: Enabling switch: the hand is coupled only while it is held. One with three positions is let go in its
+            first, held in its middle, and let go again when it is squeezed through.
+        panic: The contact of such a switch that closes when it is squeezed through: uncouples the hand.
     """
 
     clutch: Button = 0
@@ -79,6 +83,17 @@ class Buttons(Struct, frozen=True, forbid_unknown_fields=True):
     hold: Button = -1
     land: Button = -1
     return_home: Button = -1
+    enable: Button = -1
+    panic: Button = -1
+
+    def __post_init__(self) -> None:
+        for name in ("enable", "panic"):
+            number = getattr(self, name)
+            for other in self.__struct_fields__:
+                if number >= 0 and other != name and getattr(self, other) == number:
+                    raise ValueError(
+                        f"{name} and {other} are both button {number}; give {name} one of its own"
+                    )
 
 
 class Control(Struct, frozen=True, forbid_unknown_fields=True):
@@ -118,6 +133,9 @@ class Cues(Struct, frozen=True, forbid_unknown_fields=True):
         mismatch: Force a m/s between the velocity asked for and the one flown, N·s/m.
         guard: k of k (u_safe − u_cmd), N·s/m.
         part_limit: Largest norm of any one cue, N.
+        guidance: Pull towards the mission's way, N a metre further from it than `tube`; see `[training]`.
+        tube: So far from the way nothing pulls, m.
+        guidance_limit: What guidance takes of the device's force at most, as a share.
     """
 
     environment: Gain = 5.0
@@ -125,6 +143,9 @@ class Cues(Struct, frozen=True, forbid_unknown_fields=True):
     mismatch: Gain = 1.0
     guard: Gain = 2.5
     part_limit: Limit = 6.0
+    guidance: Gain = 6.0
+    tube: Limit = 0.15
+    guidance_limit: Annotated[float, Meta(gt=0, le=0.5)] = 0.3
 
 
 class Shield(Struct, frozen=True, forbid_unknown_fields=True):
@@ -145,6 +166,12 @@ class Shield(Struct, frozen=True, forbid_unknown_fields=True):
     floor: Annotated[float, Meta(ge=0, le=100)] = 0.5
     ceiling: Annotated[float, Meta(ge=0, le=1_000)] = 0.0
     fence: Annotated[float, Meta(ge=0, le=100_000)] = 0.0
+
+    def __post_init__(self) -> None:
+        if 0.0 < self.ceiling <= self.floor:
+            raise ValueError(
+                f"the ceiling, {self.ceiling}, is not above the floor, {self.floor}; raise one or lower the other"
+            )
 
 
 class Link(Struct, frozen=True, forbid_unknown_fields=True):
@@ -201,6 +228,16 @@ class Limits(Struct, frozen=True, forbid_unknown_fields=True):
     force_ramp_s: Limit = 0.1
 
 
+class Training(Struct, frozen=True, forbid_unknown_fields=True):
+    """What helps who learns.
+
+    Attributes:
+        guidance: How strongly the hand is guided to the mission's way, 0 to 1; *auto* fades as skill grows.
+    """
+
+    guidance: Literal["auto"] | Share = "auto"
+
+
 class Safety(Struct, frozen=True, forbid_unknown_fields=True):
     """When to stop trusting.
 
@@ -216,7 +253,7 @@ class Safety(Struct, frozen=True, forbid_unknown_fields=True):
     force_stale_s: Annotated[float, Meta(gt=0, le=0.5)] = 0.1
     handle_stale_s: Annotated[float, Meta(gt=0, le=0.15)] = 0.1
     setpoint_stale_s: Annotated[float, Meta(gt=0, le=0.15)] = 0.15
-    link_warning_s: Annotated[float, Meta(gt=0, le=5.0)] = 0.5
+    link_warning_s: Annotated[float, Meta(gt=0, le=5.0)] = 0.4
 
 
 class Rates(Struct, frozen=True, forbid_unknown_fields=True):
@@ -258,6 +295,7 @@ class Settings(Struct, frozen=True, forbid_unknown_fields=True):
     safety: Safety = Safety()
     rates: Rates = Rates()
     recording: Recording = Recording()
+    training: Training = Training()
     devices: dict[str, dict[str, Any]] = {}
 
 

@@ -11,7 +11,7 @@ from pathlib import Path
 from drivers.discovery import Found, discover_all
 from groundstation.config import load_settings
 from groundstation.connections import Connection, recent, remember
-from groundstation.training.mission import MISSIONS_FOLDER, SUFFIX, load_mission
+from groundstation.training.curriculum import lessons
 from groundstation.vehicle.finding import Place, listen, serial_places
 
 
@@ -51,4 +51,4 @@ def _places() -> Sequence[Place]:
 
 
 def _missions() -> list[tuple[str, str]]:
-    return [(path.stem, load_mission(path).title) for path in sorted(MISSIONS_FOLDER.glob(f"*{SUFFIX}"))]
+    return [(path.stem, mission.title) for path, mission in lessons()]

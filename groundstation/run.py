@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import datetime
 from pathlib import Path
 
 import msgspec
@@ -9,9 +10,11 @@ from msgspec import Struct
 
 from groundstation.config import Settings
 from groundstation.run_folder import run_folder
+from groundstation.training.measures import Measures, Track
 from groundstation.training.mission import Mission
 
 RUN_FILE = "run.json"
+_LONGEST_START_S = 60.0
 
 
 class Run(Struct, frozen=True):
@@ -33,6 +36,11 @@ class Run(Struct, frozen=True):
         pilot: Who flies, as people know them.
         seed: Of all that is random in the simulation.
         config: The settings file, or "" where they are the defaults.
+        par: What the flight is held against; None where nobody has flown the mission for reference.
+        par_from: Whose it is, in words, or "".
+        signing_key: The file with the key for MAVLink signing, or "". The key itself is nowhere but there.
+        ghost: The flight that is followed on map and in the viewer, or None.
+        guidance: How strongly the hand is guided towards the mission's way, 0 to 1.
     """
 
     run_id: str
@@ -50,6 +58,11 @@ class Run(Struct, frozen=True):
     pilot: str = ""
     seed: int = 0
     config: str = ""
+    par: Measures | None = None
+    par_from: str = ""
+    signing_key: str = ""
+    ghost: Track | None = None
+    guidance: float = 0.0
 
     @property
     def hand(self) -> Path | None:
@@ -90,3 +103,15 @@ def run_file(run_id: str) -> Path:
 def read_run(path: Path) -> Run:
     """Read a run file back."""
     return msgspec.json.decode(path.read_bytes(), type=Run)
+
+
+def start_of(started: str, wall: datetime.datetime, monotonic: float) -> float:
+    """Return when a run was started on the monotonic clock, s.
+
+    Args:
+        started: Wall-clock time of the start, ISO 8601.
+        wall: Wall-clock time now.
+        monotonic: Monotonic time now, s; also the answer where the wall clock was put right in between.
+    """
+    age = (wall - datetime.datetime.fromisoformat(started)).total_seconds()
+    return monotonic - age if 0.0 <= age <= _LONGEST_START_S else monotonic

@@ -9,10 +9,9 @@ import time
 from pathlib import Path
 
 import pytest
-from evaluation_support import STEP_TOML, evaluate, result
+from evaluation_support import STEP_TOML, evaluate
 
 from groundstation.cli import main
-from groundstation.evaluation.case import Outcome
 from groundstation.evaluation.progress import Progress
 
 PATIENCE_S = 60.0
@@ -138,8 +137,8 @@ def test_without_a_terminal_a_line_comes_now_and_then():
     now = iter([0.0, 1.0, 11.0, 12.0, 13.0])
     out = io.StringIO()
     with Progress(5, 1, out, lambda: next(now)) as progress:
-        for seed in range(4):
-            progress.add(result(Outcome(flown=30.0), seed=seed))
+        for _ in range(4):
+            progress.add(30.0)
     assert out.getvalue().splitlines() == ["3/5 flights, 5 × real time", "5/5 flights, 9 × real time"]
 
 
@@ -153,7 +152,7 @@ def test_on_a_terminal_it_is_a_bar_without_colours_where_none_are_wanted(monkeyp
     def drawn():
         out = Terminal()
         with Progress(2, 0, out) as progress:
-            progress.add(result(Outcome(flown=30.0)))
+            progress.add(30.0)
         return out.getvalue()
 
     monkeypatch.delenv("NO_COLOR", raising=False)

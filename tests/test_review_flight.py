@@ -128,7 +128,7 @@ def test_a_recording_of_the_first_schema_still_opens_and_reads(tmp_path):
 def test_settings_of_a_later_schema_are_refused_in_a_sentence(flight_file):
     properties = Flight(flight_file).properties()
     assert settings_from(properties) == Settings()
-    with pytest.raises(InputError, match="schema 99, this program knows up to 4"):
+    with pytest.raises(InputError, match="schema 99, this program knows up to 5"):
         settings_from(properties | {"schema": 99})
 
 

@@ -157,14 +157,14 @@ def test_an_alarming_event_is_said_for_a_moment():
 
 def test_the_next_step_follows_the_flight():
     assert "Waiting for the vehicle at udpin" in next_step(frame(NOTHING))
-    assert "A arms" in next_step(frame(flying(0.4)))
-    assert "T takes off" in next_step(frame(flying(0.8)))
-    assert "E engages" in next_step(frame(flying(3.0)))
+    assert "Shift+A arms" in next_step(frame(flying(0.4)))
+    assert "t takes off" in next_step(frame(flying(0.8)))
+    assert "e engages" in next_step(frame(flying(3.0)))
     shown = flying(3.0)
     shown.pilot.centred = 0
     shown.pilot.reason = b"the vehicle's position is 0.8 s old"
     assert next_step(frame(shown)) == (
-        "Hand uncoupled (the vehicle's position is 0.8 s old). Centre the handle, then E engages."
+        "Off centre: space centres the stick, then e engages. Uncoupled: the vehicle's position is 0.8 s old."
     )
     shown.pilot.phase = Phase.ENGAGING
     assert "Engaging" in next_step(frame(shown))
@@ -180,7 +180,7 @@ def test_what_keeps_the_vehicle_from_the_hand_is_said_the_hands_own_part_first()
     shown.pilot.waiting = 1
     assert next_step(frame(shown, "column")) == "Centre the handle to take hold."
     shown.pilot.clutched = 1
-    assert next_step(frame(shown, "column")) == "Clutch: the handle moves nothing. C takes hold again."
+    assert next_step(frame(shown, "column")) == "Clutch: the handle moves nothing. c takes hold again."
 
 
 def test_the_way_to_the_target():

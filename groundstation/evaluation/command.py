@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import os
 import shutil
 import sys
 from collections.abc import Generator, Sequence
@@ -17,7 +16,8 @@ from groundstation.evaluation.axes import read_axes
 from groundstation.evaluation.case import Result, Task
 from groundstation.evaluation.progress import Progress
 from groundstation.evaluation.store import CSV, LOG, PARQUET, Log, write_table
-from groundstation.evaluation.work import WorkError, fly_here
+from groundstation.evaluation.trial import fly
+from groundstation.evaluation.work import WorkError, fly_here, processes
 
 EXIT_STOPPED, EXIT_FAILED = 130, 1
 FIGURE = ".svg"
@@ -69,7 +69,7 @@ def _fly(tasks: Sequence[Task], log: Log, asked: argparse.Namespace) -> tuple[st
             for result in flights:
                 log.add(result)
                 log.results[result.id] = result
-                progress.add(result)
+                progress.add(result.outcome.flown)
     except KeyboardInterrupt:
         return "stopped", EXIT_STOPPED
     except WorkError as error:
@@ -84,10 +84,7 @@ def _flights(tasks: Sequence[Task], asked: argparse.Namespace) -> Generator[Resu
         from groundstation.evaluation.cluster import fly_on_cluster
 
         return fly_on_cluster(tasks, asked.cluster)
-    jobs = (os.cpu_count() or 1) if asked.jobs is None else asked.jobs
-    if jobs < 1:
-        raise InputError(f"--jobs {jobs}: is not a number of processes; give 1 or more.")
-    return fly_here(tasks, min(jobs, len(tasks)))
+    return fly_here(fly, tasks, processes(asked.jobs, len(tasks)))
 
 
 def _output(path: Path) -> Path:

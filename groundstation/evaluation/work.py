@@ -7,12 +7,15 @@ import multiprocessing
 import os
 import signal
 import threading
-from collections.abc import Generator, Sequence
+from collections.abc import Callable, Generator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
+from typing import TypeVar
 
-from groundstation.evaluation.case import Result, Task
-from groundstation.evaluation.trial import fly
+from groundstation.errors import InputError
+
+Task = TypeVar("Task")
+Result = TypeVar("Result")
 
 # Tasks handed out ahead for each process: none waits for the next.
 _AHEAD = 2
@@ -22,12 +25,28 @@ class WorkError(Exception):
     """The work cannot go on; the message says why, in one sentence."""
 
 
-def fly_here(tasks: Sequence[Task], jobs: int) -> Generator[Result]:
+def processes(asked: int | None, tasks: int) -> int:
+    """Return how many processes fly so many tasks: as many as were asked for, else as there are cores.
+
+    Raises:
+        InputError: It is no number of processes.
+    """
+    jobs = (os.cpu_count() or 1) if asked is None else asked
+    if jobs < 1:
+        raise InputError(f"--jobs {jobs}: is not a number of processes; give 1 or more.")
+    return min(jobs, tasks)
+
+
+def fly_here(fly: Callable[[Task], Result], tasks: Sequence[Task], jobs: int) -> Generator[Result]:
     """Yield results as flights end. Closing the iterator stops the flights under way.
+
+    Args:
+        fly: Flies a task to its end; what it raises ends the work.
+        tasks: What to fly.
+        jobs: How many processes.
 
     Raises:
         WorkError: A process was killed.
-        InputError: A controller cannot be made.
     """
     pool = ProcessPoolExecutor(jobs, multiprocessing.get_context("spawn"), _begin)
     ahead = iter(tasks)

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import gc
 import time
+from math import hypot
 
 import msgspec
 
@@ -27,8 +28,10 @@ from groundstation.pilot.chooser import (
     at_tick,
     beginning,
     commanded,
+    enabled,
     obeyed,
     pressed,
+    squeezed,
 )
 from groundstation.pilot.engagement import (
     Conditions,
@@ -90,7 +93,7 @@ class Servo:
         self._settings = run.settings
         self._surroundings = surroundings_of(run)
         self._controller = load_controller(run.controller, run.settings)
-        self._chosen = beginning(run.settings)
+        self._chosen = beginning(run.settings, guided=run.guidance > 0.0)
         self._bus = bus
         self._clock = clock
         self._keeper = keeper
@@ -179,16 +182,15 @@ class Servo:
 
     def _made(self) -> Pilot:
         """Return the controller for settings, device and vehicle: no faster than that allows itself."""
-        limits = bounded(self._settings.limits, self._speed_limits)
-        settings = msgspec.structs.replace(self._settings, limits=limits)
+        self._allowed = bounded(self._settings.limits, self._speed_limits)
+        settings = msgspec.structs.replace(self._settings, limits=self._allowed)
         return Pilot(settings, self._info, self._surroundings, self._controller)
 
     def _take_speed_limits(self) -> None:
         """Fit the controller to the speeds that the vehicle allows; a hand that is coupled is let go first."""
-        before = bounded(self._settings.limits, self._speed_limits)
         self._speed_limits = self._feed.speed_limits
         now = bounded(self._settings.limits, self._speed_limits)
-        if now == before:
+        if now == self._allowed:
             return
         self._engagement, ending = disengage(self._engagement, "the vehicle's speed limits have changed")
         if ending:
@@ -215,6 +217,7 @@ class Servo:
         feed = self._feed
         hand = handle if handle is not None else AT_REST
         self._homed = hand.homed
+        east, north, up, _ = feed.sample.velocity
         conditions = Conditions(
             t=now,
             gap=now - self._last_t,
@@ -233,6 +236,12 @@ class Servo:
             boots=feed.boots,
             link_fault=link_fault(feed.delay, feed.loss, self._settings.link),
             unsafe=feed.unsafe,
+            enabled=enabled(hand.buttons, self._settings.buttons),
+            squeezed=squeezed(hand.buttons, self._settings.buttons),
+            speed=hypot(east, north),
+            climb=abs(up),
+            speed_limit=self._allowed.horizontal_speed,
+            climb_limit=self._allowed.vertical_speed,
         )
         self._last_t = now
         return hand, conditions

@@ -38,12 +38,15 @@ def about_flight(run: Run, start: float) -> Iterator[Still]:
         "controller": run.controller,
         "pilot": run.pilot,
         "seed": run.seed,
+        "guidance": run.guidance,
         "groundstation": groundstation.__version__,
         "revision": revision(),
         "rerun": rr.__version__,
         "machine": platform.platform(),
         "settings_json": msgspec.json.encode(run.settings).decode(),
         "mission_json": msgspec.json.encode(mission).decode(),
+        "par_json": msgspec.json.encode(run.par).decode(),
+        "par_from": run.par_from,
     }
     yield Still(f"{_PROPERTIES}/{schema.FLIGHT}", rr.AnyValues(drop_untyped_nones=True, **facts))
     yield _page(run, None)

@@ -20,6 +20,7 @@ from groundstation.messages import (
     OBSTACLES,
     PARAMETER,
     PILOT_STATE,
+    POINTS_LOST,
     SERVO_REPORT,
     SETPOINT,
     TICK_INPUTS,
@@ -49,6 +50,7 @@ TOPICS: tuple[Topic[Any], ...] = (
     SERVO_REPORT,
     DEVICE_REPORT,
     MISSION_PROGRESS,
+    POINTS_LOST,
     HEARTBEAT,
 )
 

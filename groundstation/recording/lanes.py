@@ -8,6 +8,7 @@ from enum import Enum
 from groundstation.training.director import Stage
 from groundstation.training.events import DeviceLoss, GpsLoss, LinkLoss
 from groundstation.training.in_force import NOTHING, STATES
+from groundstation.training.score import UNFINISHED, YARDSTICKS
 
 
 class Tone(Enum):
@@ -145,7 +146,16 @@ ALERT = Lane(
     "What went wrong: each warning, collision and alarm for half a second",
     ((QUIET, Tone.IDLE), (WARNING, Tone.WARNING), (COLLISION, Tone.FAULT), (ALARM, Tone.FAULT)),
 )
+POINTS = Lane(
+    "/state/points",
+    "Where points were lost, by part of the score, once the vehicle has landed",
+    (
+        (QUIET, Tone.IDLE),
+        *((yard.part, Tone.WARNING) for yard in YARDSTICKS),
+        (UNFINISHED, Tone.FAULT),
+    ),
+)
 LANES: tuple[Lane, ...] = (
-    ALERT, PHASE, MODE, STREAM, VEHICLE, DEVICE_STATE, STAGE, MAPPING, PRESET, GUARD, COMPENSATION,
+    ALERT, POINTS, PHASE, MODE, STREAM, VEHICLE, DEVICE_STATE, STAGE, MAPPING, PRESET, GUARD, COMPENSATION,
     INTERVENTION,
 )  # fmt: skip

@@ -19,7 +19,7 @@ from groundstation.replay.changes import settings_for
 from groundstation.replay.comparing import Difference, Said, differences
 from groundstation.review.choosing import chosen
 from groundstation.review.flight import Flight
-from groundstation.review.outcome import COUPLED
+from groundstation.review.sights import COUPLED
 from groundstation.status_line import StatusLine
 
 EXIT_DIFFERENT = 1

@@ -18,7 +18,7 @@ from groundstation.pilot.sight import VehicleSample
 from groundstation.recording import lanes, schema
 from groundstation.replay.choosing import Change, chosen_over
 from groundstation.review.flight import Flight, Numbers
-from groundstation.review.outcome import COUPLED
+from groundstation.review.sights import COUPLED
 
 # Modes in which the vehicle stays where the hand left it.
 _STAYING = frozenset({"hold", "offboard", "unknown"})

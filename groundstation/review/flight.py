@@ -19,6 +19,7 @@ from groundstation.recording.lanes import Lane
 from groundstation.recording.schema import Quantity
 from groundstation.review.earlier import settings_from
 from groundstation.review.rrd import read_chunks
+from groundstation.training.measures import Measures
 from groundstation.training.mission import Mission
 
 Numbers = npt.NDArray[np.float64]
@@ -153,6 +154,11 @@ class Flight:
             InputError: The recording is of something else than a flight.
         """
         return msgspec.json.decode(self._facts()["mission_json"], type=Mission | None)
+
+    @property
+    def par(self) -> Measures | None:
+        """What it is held against; None where nobody had flown the mission for reference, and before schema 5."""
+        return msgspec.json.decode(self._facts().get("par_json", "null"), type=Measures | None)
 
     @property
     def settings(self) -> Settings:

@@ -8,8 +8,9 @@ import numpy.typing as npt
 from groundstation.recording import lanes, schema
 from groundstation.recording.schema import Quantity
 from groundstation.review.flight import Flight
-from groundstation.review.outcome import COUPLED, radius_of, words_at
+from groundstation.review.outcome import radius_of
 from groundstation.review.series import FlightSeries, Numbers, clearances, turned
+from groundstation.review.sights import COUPLED, words_at
 
 _CUES = {
     "position": schema.FORCE_CUE,
@@ -17,6 +18,7 @@ _CUES = {
     "mismatch": schema.MISMATCH_CUE,
     "guard": schema.GUARD_CUE,
     "damping": schema.DAMPING_CUE,
+    "guidance": schema.GUIDANCE_CUE,
 }
 
 

@@ -172,6 +172,22 @@ class Director:
         """Whether nothing is left but to land: the target was held, or there is none behind the route."""
         return self.stage in {Stage.RETURNING, Stage.LANDING, Stage.FREE}
 
+    @property
+    def stay(self) -> tuple[float, float]:
+        """How long the goal is to be stayed at, and how long it has been so far, s."""
+        asked = 0.0
+        if self.leg < len(self._waypoints):
+            asked = self._waypoints[self.leg].hold_s
+        elif self.mission.target and self.leg < self.legs:
+            asked = self.mission.target.hold_s
+        since = self._held_since
+        return asked, 0.0 if since is None else self._took_off_t + self.figures.duration - since
+
+    @property
+    def missed(self) -> tuple[Gate, ...]:
+        """The gates not flown through yet."""
+        return tuple(self._gates)
+
     def elapsed(self, t: float) -> float:
         """Return the time since take-off, s; 0 before it."""
         return 0.0 if self.stage is Stage.WAITING else t - self._took_off_t

@@ -1,52 +1,104 @@
-"""Follows a mission live: what the console sees goes to the director, and how it is going onto the bus."""
+"""Follows a mission live: all that the bus tells of it is measured, and how it is going is told to the bus."""
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 from groundstation.bus import Bus
 from groundstation.console import Snapshot
-from groundstation.messages import MISSION_PROGRESS, Phase
+from groundstation.messages import (
+    EVENT_TEXT,
+    HANDLE,
+    MISSION_PROGRESS,
+    PART_TEXT,
+    PILOT_STATE,
+    POINTS_LOST,
+    VEHICLE_STATE,
+    VEHICLE_STATUS,
+    PointsLost,
+    fit,
+)
+from groundstation.training.attempts import Attempts
 from groundstation.training.conducting import Conductor
-from groundstation.training.director import Director, Stage
+from groundstation.training.director import Director
+from groundstation.training.judgement import Judgement, judgement_of
+from groundstation.training.measurer import HandSight, Measurer, VehicleSight
+from groundstation.training.measures import Measures
 from groundstation.training.mission import Mission
+from groundstation.training.sights import Sights
+from groundstation.training.story import Moment
 from sim.airframe import load_airframe
-from sim.environment.world import World
 
 
 class MissionFollower:
-    """Feeds a director from snapshots, in any flight, by hand or headless.
+    """Measures a mission in any flight, by hand or headless, from every record and not only from the newest.
 
     Args:
         mission: What is flown.
-        bus: Where the progress goes.
+        bus: Where the records come from and the progress goes.
+        par: What the flight is held against; None where nobody has flown it for reference.
 
     Attributes:
-        director: Knows how the mission is going.
+        attempts: The run's flights.
+        judgement: Of the last that landed; None before.
+        complete: No record was missed: held up for seconds, what it says may differ from what the recording says.
     """
 
-    def __init__(self, mission: Mission, bus: Bus) -> None:
-        radius = load_airframe(mission.vehicle.airframe).radius
-        self._begin = lambda: Director(mission, World(mission.obstacle), radius)
-        self.director = self._begin()
+    def __init__(self, mission: Mission, bus: Bus, par: Measures | None = None) -> None:
+        self.attempts = Attempts(mission, load_airframe(mission.vehicle.airframe).radius)
+        self.judgement: Judgement | None = None
+        self.complete = True
+        self._par = par
+        self._sights = Sights()
+        self._states = bus.subscriber(VEHICLE_STATE)
+        self._statuses = bus.subscriber(VEHICLE_STATUS)
+        self._pilots = bus.subscriber(PILOT_STATE)
+        self._handles = bus.subscriber(HANDLE)
         self._conductor = Conductor(mission, bus)
         self._progress = bus.publisher(MISSION_PROGRESS)
-        self._seen_t = 0.0
-        self._controlled_t = 0.0
+        self._losses = bus.publisher(POINTS_LOST)
+
+    @property
+    def measurer(self) -> Measurer:
+        """Measures the flight under way, or the last one."""
+        return self.attempts.current
+
+    @property
+    def director(self) -> Director:
+        """Knows how the flight under way is going."""
+        return self.attempts.current.director
 
     def look(self, view: Snapshot) -> None:
-        """Take note of what is new in a snapshot, and tell the bus."""
-        status, state, pilot = view.status, view.vehicle, view.pilot
-        if self.director.stage is Stage.DONE and status and status.armed and status.in_air:
-            # Landed, and up again in the same run: that is another flight.
-            self.director = self._begin()
-        if status and state and state.valid and state.t > self._seen_t:
-            self._seen_t = state.t
-            x, y, z, yaw = state.position
-            self.director.vehicle(
-                state.t, (x, y, z, yaw), in_air=bool(status.in_air), armed=bool(status.armed)
-            )
-        if pilot and pilot.phase == Phase.ENGAGED and pilot.t > self._controlled_t:
-            self._controlled_t = pilot.t
-            force = tuple(view.handle.force) if view.handle else (0.0, 0.0, 0.0)
-            self.director.controller((pilot.error[0], pilot.error[1], pilot.error[2]), force)
+        """Take note of what is new, and tell the bus how it is going."""
+        self._read()
         self._conductor.look(self.director, view.t)
         self._progress.send(self.director.progress(view.t))
+
+    def finish(self) -> None:
+        """Take note of what is left, when no more records come."""
+        self._read()
+        self._show(self._sights.rest())
+
+    def _read(self) -> None:
+        # The order matters: see `Sights`.
+        states = list(self._states.drain())
+        statuses = list(self._statuses.drain())
+        pilots = list(self._pilots.drain())
+        handles = list(self._handles.drain())
+        self.complete &= len(handles) < HANDLE.depth
+        self._show(self._sights.take(states, statuses, pilots, handles))
+
+    def _show(self, sights: Iterable[VehicleSight | HandSight]) -> None:
+        landed = len(self.attempts.landed)
+        for sight in sights:
+            self.attempts.show(sight)
+        if len(self.attempts.landed) > landed:
+            self.judgement = judgement_of(self.attempts.landed[-1], self._par)
+            self._tell(self.judgement.story)
+
+    def _tell(self, story: Iterable[Moment]) -> None:
+        """Tell the bus, and so the recording, where points were lost."""
+        for moment in story:
+            loss = PointsLost(t=moment.t, until=moment.until, points=moment.lost, position=moment.place)
+            loss.part, loss.text = fit(moment.part, PART_TEXT), fit(moment.words, EVENT_TEXT)
+            self._losses.send(loss)

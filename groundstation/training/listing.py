@@ -1,39 +1,120 @@
-"""`groundstation missions`: what there is to fly, and whether a file is right."""
+"""`groundstation missions list` and `check`: what there is to fly, and whether a file is right."""
 
 from __future__ import annotations
 
 import argparse
+import itertools
+import json
 import sys
-from collections.abc import Sequence
-from pathlib import Path
+from collections.abc import Mapping
+from typing import TextIO
 
-from groundstation.training.mission import MISSIONS_FOLDER, SUFFIX, MissionError, load_mission
+from groundstation.errors import InputError
+from groundstation.training.checking import faults, misplaced
+from groundstation.training.curriculum import Lesson, lessons
+from groundstation.training.mission import Mission, MissionError, load_mission
+from groundstation.training.par import par_in
+from groundstation.training.reference import load_reference, reference_fault
+from sim.airframe import load_airframe
+from sim.scenario import ScenarioError
+
+_LEVELS = {1: "first steps", 2: "paths and landing", 3: "precision", 4: "trouble", 5: "mastery"}
 
 
-def run(asked: argparse.Namespace) -> int:
-    """Do what was asked and return the exit code."""
-    return show() if asked.act == "list" else check(asked.files)
-
-
-def show() -> int:
-    """Print the missions that come with the program, a line each; return the exit code."""
-    for path in sorted(MISSIONS_FOLDER.glob(f"*{SUFFIX}")):
-        mission = load_mission(path)
-        print(f"{path.stem:<12} {mission.title}")
+def show_all(asked: argparse.Namespace) -> int:
+    """Print the missions that come with the program in the order in which they are learned; return the exit code."""
+    found = lessons()
+    if asked.json:
+        print(json.dumps([_fields(lesson) for lesson in found], indent=1))
+        return 0
+    names, skills = (max(map(len, words)) for words in zip(*map(_words, found), strict=True))
+    print(f"{'':<{names + 2}}  {'trains':<{skills}}  {'par':>6}")
+    for group, members in itertools.groupby(found, _group):
+        print(group)
+        for lesson in members:
+            name, skill = _words(lesson)
+            print(f"  {name:<{names}}  {skill:<{skills}}  {_par(lesson):>6}  {lesson.mission.title}")
     return 0
 
 
-def check(files: Sequence[Path]) -> int:
-    """Say for every file whether it is a mission; return 0 when all are, else 2."""
-    code = 0
-    for path in files:
+def check(asked: argparse.Namespace) -> int:
+    """Say for every file whether it can be flown; return 0, 1 where one cannot, 2 where one is no mission."""
+    codes = [0]
+    shipped = {mission.name: mission for _, mission in lessons()}
+    for path in asked.files:
         try:
             mission = load_mission(path)
         except MissionError as error:
             print(f"groundstation: {error}", file=sys.stderr)
-            code = 2
+            codes.append(2)
         else:
-            print(
-                f"{path}: right ({mission.name}: {len(mission.obstacle)} obstacles, {len(mission.way)} legs)."
-            )
-    return code
+            codes.append(told(str(path), mission, sys.stdout, shipped))
+            if mission.judged and (unmeasured := reference_fault(mission, path)):
+                print(unmeasured)
+    return max(codes)
+
+
+def told(where: str, mission: Mission, out: TextIO, shipped: Mapping[str, Mission] | None = None) -> int:
+    """Tell what is wrong with a mission, or that nothing is; return 0, or 1 where it cannot be flown as it is.
+
+    Args:
+        where: What to call it.
+        mission: As loaded.
+        out: Where to.
+        shipped: The missions that it may need, by name; without them needs are not looked at.
+    """
+    try:
+        found = faults(mission, load_airframe(mission.vehicle.airframe))
+    except ScenarioError as error:
+        raise InputError(f"{where}: vehicle.airframe: {error}") from error
+    found += misplaced(mission, shipped) if shipped is not None else []
+    for sentence in found:
+        print(f"{where}: {sentence}", file=out)
+    if not found:
+        print(f"{where}: right ({mission.name}: {_count(mission)}).", file=out)
+    return 1 if found else 0
+
+
+def _count(mission: Mission) -> str:
+    things = {
+        "point": len(mission.waypoints) + (mission.target is not None),
+        "obstacle": len(mission.obstacle),
+        "event": len(mission.event),
+    }
+    return ", ".join(f"{count} {word}{'' if count == 1 else 's'}" for word, count in things.items())
+
+
+def _group(lesson: Lesson) -> str:
+    mission = lesson.mission
+    return f"level {mission.level}: {_LEVELS[mission.level]}" if mission.judged else "free: nothing is judged"
+
+
+def _words(lesson: Lesson) -> tuple[str, str]:
+    """Return a mission's name and what it is mainly for."""
+    return lesson.mission.name, lesson.mission.skills[0] if lesson.mission.skills else ""
+
+
+def _par(lesson: Lesson) -> str:
+    seconds = _par_s(lesson)
+    return "" if seconds is None else f"{seconds:.0f} s"
+
+
+def _par_s(lesson: Lesson) -> float | None:
+    """Return how long the reference operator takes on seed 0, s; None where nobody has measured it."""
+    par, _ = par_in(load_reference(lesson.mission, lesson.path), 0)
+    return par.time_s if par else None
+
+
+def _fields(lesson: Lesson) -> dict[str, object]:
+    path, mission = lesson
+    return {
+        "name": mission.name,
+        "title": mission.title,
+        "teaches": mission.teaches,
+        "level": mission.level,
+        "skills": mission.skills,
+        "needs": mission.needs,
+        "judged": mission.judged,
+        "par_s": _par_s(lesson),
+        "file": str(path),
+    }

@@ -84,21 +84,28 @@ class Measurer:
     Args:
         mission: What is flown.
         radius: The vehicle's, m.
+        coupled: The vehicle follows the hand already.
 
     Attributes:
         director: Follows the mission.
+        coupled: The vehicle follows the hand.
         vehicle_rows, hand_rows: What was kept, in the order of time.
         collisions: When obstacles were touched, s, and which.
+        took_off_t, end_t: When it took off, and landed or was seen last, s; NaN before.
+        held_t: When the target had been held for long enough, s; NaN before.
+        place: Where it was seen last, world, m.
     """
 
-    def __init__(self, mission: Mission, radius: float) -> None:
+    def __init__(self, mission: Mission, radius: float, *, coupled: bool = False) -> None:
         self._world = World(mission.obstacle)
         self._way = way_of(mission)
-        self._coupled = False
+        self.coupled = coupled
         self.director = Director(mission, self._world, radius)
         self.vehicle_rows: list[VehicleRow] = []
         self.hand_rows: list[HandRow] = []
         self.collisions: list[tuple[float, str]] = []
+        self.took_off_t = self.end_t = self.held_t = math.nan
+        self.place: Vector3 = (0.0, 0.0, 0.0)
 
     def vehicle(self, sight: VehicleSight) -> None:
         """Take note of the vehicle."""
@@ -106,20 +113,25 @@ class Measurer:
         collisions = director.figures.collisions
         # The row belongs to the leg that was under way up to now: the point that ends it lies on both.
         off = self._off(leg=director.leg, place=(x, y, z))
+        if director.stage is Stage.DONE:
+            return
         director.vehicle(sight.t, sight.position, in_air=sight.in_air, armed=sight.armed)
+        if director.stage is Stage.WAITING:
+            return
+        self._mark(sight.t, (x, y, z))
         if director.figures.collisions > collisions:
-            self.collisions.append((sight.t, self._world.clearance((x, y, z))[1]))
-        if self._coupled and self._flying:
+            self.collisions.append((sight.t, self.nearest((x, y, z))))
+        if self.coupled and self._flying:
             speed = math.hypot(*sight.velocity)
             self.vehicle_rows.append(VehicleRow(sight.t, (x, y, z), speed, director.clearance, off))
 
     def hand(self, sight: HandSight) -> None:
         """Take note of the hand."""
-        self._coupled = sight.coupled
-        if not (sight.coupled and self._flying):
+        self.coupled = sight.coupled
+        error, force = math.hypot(*sight.error), math.hypot(*sight.force)
+        if not (sight.coupled and self._flying and math.isfinite(error + force)):
             return
         self.director.controller(sight.error, sight.force)
-        error, force = math.hypot(*sight.error), math.hypot(*sight.force)
         self.hand_rows.append(HandRow(sight.t, error, sight.disagreement, force, sight.on_leash))
 
     def measures(self) -> Measures:
@@ -141,9 +153,23 @@ class Measurer:
             collisions=figures.collisions,
             gates_missed=figures.gates_missed / figures.gates if figures.gates else math.nan,
             smoothness=smoothness(parted(speeds, _GAP_S)),
-            disagreement_mps=_mean([row.disagreement for row in self.hand_rows]),
+            disagreement_mps=_mean(
+                [row.disagreement for row in self.hand_rows if math.isfinite(row.disagreement)]
+            ),
             effort_n=_mean([row.force for row in self.hand_rows]),
         )
+
+    def nearest(self, place: Vector3) -> str:
+        """Return the name of the obstacle nearest to a place; "" without any."""
+        return self._world.clearance(place)[1]
+
+    def _mark(self, t: float, place: Vector3) -> None:
+        """Keep when and where it is at the marks of the flight."""
+        if math.isnan(self.took_off_t):
+            self.took_off_t = t
+        if math.isnan(self.held_t) and not math.isnan(self.director.figures.final_error):
+            self.held_t = t
+        self.end_t, self.place = t, place
 
     @property
     def _flying(self) -> bool:

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import math
 
+import msgspec
 from msgspec import Struct
 
 
-class Measures(Struct, frozen=True):
-    """A flight in numbers; NaN where there is nothing to be measured.
+class Measures(Struct, frozen=True, omit_defaults=True):
+    """A flight in numbers; NaN where there is nothing to be measured. JSON knows no NaN: there they are left out.
 
     Attributes:
         time_s: From take-off to landing, s.
@@ -37,6 +38,12 @@ class Measures(Struct, frozen=True):
     smoothness: float = math.nan
     disagreement_mps: float = math.nan
     effort_n: float = math.nan
+
+    def __post_init__(self) -> None:
+        for name in self.__struct_fields__:
+            if not math.isfinite(getattr(self, name)):
+                # What has no end is no measure; of all the NaN only the default itself is left out of JSON.
+                msgspec.structs.force_setattr(self, name, math.nan)
 
 
 class Track(Struct, frozen=True):

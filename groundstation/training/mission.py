@@ -5,6 +5,7 @@ The tables of the world are `sim.scenario`'s; the rest is here. A key that is no
 
 from __future__ import annotations
 
+from math import dist
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -175,13 +176,17 @@ class Mission(Struct, frozen=True, forbid_unknown_fields=True):
 
     @property
     def way(self) -> tuple[Point, ...]:
-        """The points from the first to the target or to above the pad, world, m."""
+        """The points from the first to the target or to above the pad, world, m.
+
+        Where the last point lies over the pad already the descent begins there.
+        """
         points = [each.at if isinstance(each, Waypoint) else each for each in self.route]
         if self.target:
             points.append(self.target.position)
         if pad := self.landing_pad:
             x, y, z = pad.position
-            points.append((x, y, z + self.takeoff_altitude_m))
+            if not points or dist(points[-1][:2], (x, y)) > pad.radius:
+                points.append((x, y, z + self.takeoff_altitude_m))
         return tuple(points)
 
     @property

@@ -8,11 +8,18 @@ import sys
 import time
 from typing import TextIO
 
+import msgspec
+
 from groundstation.console import Snapshot
 from groundstation.messages import Event, ServoReport, Severity
 from groundstation.run import Run
 from groundstation.status_line import StatusLine
 from groundstation.training.director import Director
+from groundstation.training.judgement import Judgement, judgement_of
+from groundstation.training.measurer import Measurer
+from groundstation.training.score import Score
+from groundstation.training.story import Moment
+from groundstation.training.telling import NAME, told
 
 
 class Narrator:
@@ -44,12 +51,15 @@ class Narrator:
         self._line.close()
 
 
-def summary(run: Run, director: Director, servo: ServoReport | None, failure: str) -> dict[str, object]:
+def summary(
+    run: Run, measurer: Measurer, judgement: Judgement, servo: ServoReport | None, failure: str
+) -> dict[str, object]:
     """Return a flight's summary as it is printed with `--json`. Numbers that do not exist are null."""
-    figures = director.figures
+    director, figures = measurer.director, measurer.director.figures
     report = servo or ServoReport(run_p50=math.nan, run_p99=math.nan, rate=math.nan)
+    missing = [failure] if failure else list(judgement.shortcomings)
     return {
-        "completed": not failure and not director.shortcomings(),
+        "completed": not missing,
         "mission": director.mission.name,
         "simulated": run.simulated,
         "collisions": figures.collisions,
@@ -58,6 +68,9 @@ def summary(run: Run, director: Director, servo: ServoReport | None, failure: st
         "rms_error_m": _rounded(figures.rms_error, 4),
         "final_error_m": _rounded(figures.final_error, 4),
         "max_force_n": _rounded(figures.max_force, 3),
+        "score": _score(judgement.score, run.par_from),
+        "measures": msgspec.to_builtins(judgement.measures),
+        "story": [_moment(moment, judgement.took_off_t) for moment in judgement.story],
         "servo": {
             "rate_hz": _rounded(report.rate, 1),
             "ticks": int(report.ticks),
@@ -66,19 +79,49 @@ def summary(run: Run, director: Director, servo: ServoReport | None, failure: st
             "late_p99_us": _rounded(report.run_p99 * 1e6, 1),
         },
         "logs": {"rrd": _existing(run, "rrd"), "tlog": _existing(run, "tlog")},
-        "shortcomings": [failure] if failure else director.shortcomings(),
+        "shortcomings": missing,
     }
 
 
-def summarise(run: Run, director: Director, servo: ServoReport | None, failure: str, *, as_json: bool) -> int:
+def summarise(run: Run, measurer: Measurer, servo: ServoReport | None, failure: str, *, as_json: bool) -> int:
     """Print the summary and return the exit code: 0 when the mission's criteria hold, else 1."""
-    figures = summary(run, director, servo, failure)
+    judgement = judgement_of(measurer, run.par)
+    figures = summary(run, measurer, judgement, servo, failure)
     if as_json:
         print(json.dumps(figures))
     else:
         print(_table(figures))
+        print("\n".join(told(judgement, run.par_from)))
     sys.stdout.flush()
     return 0 if figures["completed"] else 1
+
+
+def _score(score: Score | None, par_from: str) -> dict[str, object] | None:
+    if score is None:
+        return None
+    parts = [
+        {
+            "name": part.name,
+            "points": part.points,
+            "weight": part.weight,
+            "value": _known(part.value),
+            "par": _known(part.par),
+            "unit": part.unit,
+            "formula": part.formula,
+        }
+        for part in score.parts
+    ]
+    return {"points": score.points, "par_from": par_from, "parts": parts}
+
+
+def _moment(moment: Moment, took_off_t: float) -> dict[str, object]:
+    return {
+        "part": moment.part,
+        "since_takeoff_s": _rounded(moment.t - took_off_t, 2),
+        "lost": moment.lost,
+        "words": moment.words,
+        "position_m": list(moment.place),
+    }
 
 
 def _table(figures: dict[str, object]) -> str:
@@ -107,7 +150,7 @@ def _table(figures: dict[str, object]) -> str:
         ("recording", logs["rrd"] or "none"),
         ("MAVLink log", logs["tlog"] or "none"),
     )
-    return "\n".join(f"{name:<15} {value}" for name, value in rows)
+    return "\n".join(f"{name:<{NAME}} {value}" for name, value in rows)
 
 
 def _metres(length: object) -> str:
@@ -130,6 +173,10 @@ def figures_of(director: Director, view: Snapshot) -> str:
 def _words(event: Event) -> str:
     sign = "!!" if event.severity == Severity.ALARM else "!"
     return f"{sign} {event.source.decode()}: {event.text.decode(errors='replace')}"
+
+
+def _known(value: float) -> float | None:
+    return value if math.isfinite(value) else None
 
 
 def _rounded(value: float, digits: int) -> float | None:

@@ -7,6 +7,7 @@ out at a steady rate while the screen turns; a screen that hangs is a stick gone
 from __future__ import annotations
 
 import asyncio
+import datetime
 import importlib
 import signal
 import time
@@ -20,9 +21,13 @@ from textual.screen import ModalScreen, Screen
 
 from groundstation.console import Snapshot
 from groundstation.messages import CommandKind, FlightMode, Severity
-from groundstation.run import Run
+from groundstation.run import Run, start_of
+from groundstation.training.coach import LiveCoach
 from groundstation.training.director import Director
 from groundstation.training.follower import MissionFollower
+from groundstation.training.guide import Guide, guide_of
+from groundstation.training.score import Score, score_of
+from groundstation.training.workload import Workload
 from groundstation.tui.acts import ACTS, URGENT, Act, coupled, in_air
 from groundstation.tui.alarms import Alarms
 from groundstation.tui.alerts import conditions
@@ -49,6 +54,7 @@ from groundstation.tui.widgets.stick import YAW, stays
 
 _POLL_S = 0.1
 _LOOK_S = 0.5
+_JUDGE_S = 1.0
 
 
 def _everywhere() -> list[BindingType]:
@@ -82,6 +88,9 @@ class FlightApp(Commanding):
         supervisor: Says how the other processes are.
         stick: Takes the on-screen stick's deflection, or None where another device is in use.
         follower: Follows the mission, if there is one.
+        coach: Tells the trainee what to do instead, if there is one.
+        best: The pilot's best score in this mission before; None where there is none.
+        on_workload: Keeps what was answered after a flight.
         clock: Monotonic seconds, the bus's clock.
     """
 
@@ -98,6 +107,9 @@ class FlightApp(Commanding):
         stick: StickSender | None,
         *,
         follower: MissionFollower | None = None,
+        coach: LiveCoach | None = None,
+        best: Score | None = None,
+        on_workload: Callable[[Workload], None] = lambda _: None,
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
         super().__init__(run, console)
@@ -110,9 +122,12 @@ class FlightApp(Commanding):
         self._track, self._history = Track(), History()
         self._alarms, self._pace = Alarms(), PaintPace(run.settings.rates.screen)
         self._started = self._snapshot.t
-        self._next_poll = self._next_look = 0.0
+        self._start = start_of(run.started, datetime.datetime.now().astimezone(), clock())
+        self._next_poll = self._next_look = self._next_score = 0.0
         self._keepalive = Keepalive(self._send_stick, clock)
-        self._follower = follower
+        self._follower, self._coach = follower, coach
+        self.best, self._on_workload = best, on_workload
+        self._score: Score | None = None
         self._flight = FlightScreen(self.hand if stick is not None else None)
         self._milestones, self._viewer = Milestones(), Viewer()
         self._latest: Frame | None = None
@@ -142,6 +157,7 @@ class FlightApp(Commanding):
         snapshot = self._snapshot = self._reader.snapshot()
         if self._follower is not None:
             self._follower.look(snapshot)
+            self._judge(self._follower, snapshot.t)
         polled = snapshot.t >= self._next_poll
         if polled:
             self._next_poll = snapshot.t + _POLL_S
@@ -167,6 +183,13 @@ class FlightApp(Commanding):
             self._next_look = snapshot.t + _LOOK_S
             self._look_around(frame)
 
+    def _judge(self, follower: MissionFollower, t: float) -> None:
+        """Work out the score so far; it takes some milliseconds, so not in every frame."""
+        if t >= self._next_score:
+            self._next_score = t + _JUDGE_S
+            measurer = follower.measurer
+            self._score = score_of(measurer.director.mission, measurer.measures(), self._flight_run.par)
+
     def _look_around(self, frame: Frame) -> None:
         """Show the page that is due, but never in place of what the operator looks at."""
         if failure := self._viewer.failure():
@@ -185,6 +208,10 @@ class FlightApp(Commanding):
         return self._follower.director if self._follower is not None else None
 
     def _frame(self, snapshot: Snapshot) -> Frame:
+        director, guide, coaching = self.director, None, ""
+        if director is not None:
+            guide = guide_of(director, snapshot.t)
+            coaching = self._coached(snapshot, guide, director.clearance)
         return Frame(
             snapshot=snapshot,
             run=self._flight_run,
@@ -196,10 +223,19 @@ class FlightApp(Commanding):
             notes=tuple(self._answers.notes),
             track=self._track,
             history=self._history,
-            figures=self._follower.director.figures if self._follower is not None else None,
+            figures=director.figures if director is not None else None,
+            score=self._score,
+            judgement=self._follower.judgement if self._follower is not None else None,
+            guide=guide,
+            coaching=coaching,
             alarms=self._alarms,
             paint_hz=self._pace.rate,
         )
+
+    def _coached(self, snapshot: Snapshot, guide: Guide, clearance: float) -> str:
+        if self._coach is None:
+            return ""
+        return self._coach.look(snapshot, guide, clearance, quiet=self._alarms.first() is not None)
 
     def _send_stick(self) -> None:
         if self._stick is not None:
@@ -235,12 +271,22 @@ class FlightApp(Commanding):
         while self.screen is not self._flight:
             self.pop_screen()
 
-    def action_review(self) -> None:
-        """Open the recording in the viewer."""
+    def review_at(self, t: float) -> None:
+        """Open the recording in the viewer at a moment, s on the clock of the flight."""
+        self.action_review(max(t - self._start, 0.0))
+
+    def take_workload(self, workload: Workload | None) -> None:
+        """Keep how hard it was, unless that was not said."""
+        if workload is not None:
+            self._on_workload(workload)
+            self.notify(f"Kept: workload {workload.raw:.0f} of 100.", timeout=3.0)
+
+    def action_review(self, at: float | None = None) -> None:
+        """Open the recording in the viewer, at a time of the recording, s, or at its beginning."""
         if coupled(self._snapshot) or in_air(self._snapshot):
             self.notify("Land first: the viewer takes its time of this machine.", severity="warning")
             return
-        self._viewer.open(self._flight_run.recording)
+        self._viewer.open(self._flight_run.recording, at)
         self.notify("The viewer is starting.", timeout=3.0)
 
     def _end(self, code: int) -> None:

@@ -11,6 +11,9 @@ from groundstation.console import Snapshot
 from groundstation.messages import CommandKind, PilotState, Record
 from groundstation.run import Run
 from groundstation.training.director import Figures
+from groundstation.training.guide import Guide
+from groundstation.training.judgement import Judgement
+from groundstation.training.score import Score
 from groundstation.tui.acts import PILOT_STALE_S
 from groundstation.tui.alarms import Alarms
 from groundstation.tui.hand import Share4
@@ -60,6 +63,10 @@ class Frame:
         guarded_by: What the guard keeps away from, now or a moment ago, or "".
         notes: What the screen itself has to say, oldest first.
         figures: What the mission has come to so far, or None without one.
+        guide: How far the mission is and what is next, or None without one.
+        coaching: What the trainee does wrong and should do instead, or "".
+        score: What that is worth so far, as of a second ago; None where there is nothing to be judged by.
+        judgement: Of the last flight that landed, or None before.
         alarms: What is wrong, as of the frame before.
         paint_hz: Frames painted a second, as the terminal takes them.
     """
@@ -75,6 +82,10 @@ class Frame:
     track: Track
     history: History
     figures: Figures | None = None
+    guide: Guide | None = None
+    coaching: str = ""
+    score: Score | None = None
+    judgement: Judgement | None = None
     alarms: Alarms = field(default_factory=Alarms)
     paint_hz: float = math.nan
 
@@ -82,6 +93,11 @@ class Frame:
     def now(self) -> float:
         """The snapshot's time, s."""
         return self.snapshot.t
+
+    @property
+    def guided(self) -> bool:
+        """The hand is guided to the mission's way."""
+        return self.run.guidance > 0.0
 
     def age(self, record: Record | None) -> float:
         """Return a record's age, s; infinite where there is none."""

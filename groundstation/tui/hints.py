@@ -7,7 +7,9 @@ import math
 from groundstation.messages import MappingMode, Phase
 from groundstation.training.director import Stage
 from groundstation.tui.acts import armed, in_air
+from groundstation.tui.directions import steering, title, way_of
 from groundstation.tui.frame import Frame
+from groundstation.tui.hand import CENTRED
 from groundstation.tui.notes import words
 from groundstation.tui.rows import quantity
 
@@ -18,6 +20,10 @@ _BOUNDS = {
     "fence": "the fence",
     "sensor": "what its sensors see",
 }
+_ENDED = frozenset({Stage.RETURNING.value, Stage.FREE.value})
+# What the pilot says of a handle that is not where engaging is possible.
+_OFF_CENTRE = "not in its centre"
+_CENTRE_IT = "Off centre: space centres the stick, then e engages."
 
 
 def next_step(frame: Frame) -> str:
@@ -27,53 +33,77 @@ def next_step(frame: Frame) -> str:
     if status is None or not status.connected:
         return f"Waiting for the vehicle at {frame.run.url} …"
     if not armed(snapshot):
-        return "Ready on the ground. A arms."
+        moved = frame.stick is not None and frame.stick != CENTRED
+        return f"Ready on the ground. Shift+A arms{'; the stick is off centre, space centres it' * moved}."
     if not in_air(snapshot):
-        return "Armed on the ground. T takes off."
+        return "Armed on the ground. t takes off."
     if pilot is None:
         return "In the air. Waiting for the pilot process …"
     if pilot.phase == Phase.ENGAGED:
         return _engaged_hint(frame)
     if pilot.phase == Phase.ENGAGING:
         return "Engaging: the vehicle is asked to follow …"
-    reason = words(pilot.reason)
-    uncoupled = f"Hand uncoupled ({reason})." if reason else "In the air, hand uncoupled."
-    return f"{uncoupled} {'E engages.' if pilot.centred else 'Centre the handle, then E engages.'}"
+    return _uncoupled_hint(frame, words(pilot.reason), centred=bool(pilot.centred))
+
+
+def as_told(text: str, frame: Frame) -> str:
+    """Return what the pilot tells with the remedy that the hand in use has, which it does not know."""
+    return _CENTRE_IT if frame.stick is not None and _OFF_CENTRE in text else text
+
+
+def _uncoupled_hint(frame: Frame, reason: str, *, centred: bool) -> str:
+    """Say what to do first and why after it: where there is little room the reason is cut."""
+    told = f" Uncoupled: {reason}." if reason and _OFF_CENTRE not in reason else ""
+    if centred:
+        return f"e engages.{told}" if told else "In the air, hand uncoupled. e engages."
+    remedy = _CENTRE_IT if frame.stick is not None else "Centre the handle, then e engages."
+    return f"{remedy}{told}"
 
 
 def _engaged_hint(frame: Frame) -> str:
-    if hampered := _hampered(frame):
+    """What hampers comes first, unless there is better to be said of what the trainee does; then the way."""
+    if hampered := _holding_nothing(frame) or frame.coaching or _hampered(frame):
         return hampered
     mission, still = frame.run.mission, _standstill(frame)
     progress, target = frame.snapshot.progress, distance_to_target(frame)
-    if progress is not None and words(progress.stage) == Stage.RETURNING.value and math.isfinite(target):
-        return f"Engaged. The target is held: mission flown. {still}, L lands."
+    guide, way = frame.guide, way_of(frame)
+    if guide is not None and way is not None:
+        return f"{guide.number} {steering(frame, guide, way)} {_said(frame)}".rstrip()
+    if mission is not None and mission.judged and progress is not None and words(progress.stage) in _ENDED:
+        return f"All points reached: mission flown. {still}, l lands."
     if mission is not None and mission.target is not None and math.isfinite(target):
-        return f"Engaged. Target {quantity(target, 'm', 1)} away. {still}, X releases."
-    return f"Engaged. {still}, X releases, H holds."
+        return f"Engaged. Target {quantity(target, 'm', 1)} away. {still}, x releases."
+    return f"Engaged. {still}, x releases, h holds."
+
+
+def _said(frame: Frame) -> str:
+    """Return what the mission says of the goal, without its number."""
+    assert frame.guide is not None
+    goal = frame.guide.goal
+    return title(frame.guide).partition(" ")[2] if goal is not None and goal.say else ""
+
+
+def _holding_nothing(frame: Frame) -> str:
+    """Say why the handle moves nothing, or ""."""
+    pilot = frame.pilot
+    if pilot is not None and pilot.clutched:
+        return "Clutch: the handle moves nothing. c takes hold again."
+    return "Centre the handle to take hold." if pilot is not None and pilot.waiting else ""
 
 
 def _hampered(frame: Frame) -> str:
     """Say why the vehicle does not do what the hand does, or ""."""
-    pilot = frame.pilot
-    if pilot is None:
-        return ""
-    if pilot.clutched:
-        return "Clutch: the handle moves nothing. C takes hold again."
-    if pilot.waiting:
-        return "Centre the handle to take hold."
     if frame.guarded_by:
         return f"Guard: it keeps the vehicle away from {_BOUNDS.get(frame.guarded_by, frame.guarded_by)}."
-    return (
-        "On the leash: the vehicle does not keep up, the force shows where it is." if pilot.on_leash else ""
-    )
+    on_leash = frame.pilot is not None and frame.pilot.on_leash
+    return "On the leash: the vehicle does not keep up, the force shows where it is." if on_leash else ""
 
 
 def _standstill(frame: Frame) -> str:
     """Say how the hand gets the vehicle to stand, or itself some way to go."""
     pilot = frame.pilot
     if pilot is not None and pilot.mapping == MappingMode.POSITION:
-        return "C clutches to reach on"
+        return "c clutches to reach on"
     return "Space lets go of the stick" if frame.stick is not None else "The handle's centre is standstill"
 
 

@@ -7,11 +7,13 @@ import math
 import numpy as np
 
 from groundstation.messages import Phase, PilotState
+from groundstation.training.guide import Guide, way_to
 from groundstation.training.mission import Fence, Mission
-from groundstation.tui import wireframe
-from groundstation.tui.camera import NOTHING, Camera, Solids
+from groundstation.tui import goals_inside, wireframe
+from groundstation.tui.camera import Camera, Solids
 from groundstation.tui.canvas import Canvas
 from groundstation.tui.frame import Frame
+from groundstation.tui.ghosts import ghost_lines
 from groundstation.tui.moving import FADED_S, FRESH_S, echoes
 from groundstation.tui.perspective import Lines, draw, visible
 from groundstation.tui.rows import columns_of
@@ -73,7 +75,7 @@ def draw_inside(
     mission, pilot = frame.run.mission, frame.pilot
     if pilot is not None and pilot.phase != Phase.ENGAGED:
         pilot = None
-    scene = [*_standing(frame, eye, mission, fence), *_flown(frame, chase=chase)]
+    scene = [*_standing(frame, eye, mission, fence), *_flown(frame, chase=chase), *ghost_lines(frame)]
     if pilot is not None:
         scene += _led(frame, pilot, chase=chase)
     draw(canvas, eye, solids, scene)
@@ -88,7 +90,7 @@ def draw_inside(
 
 
 def _standing(frame: Frame, eye: Camera, mission: Mission | None, fence: Fence) -> list[Lines]:
-    """Return ground, horizon, fence, obstacles, gates, route and target."""
+    """Return ground, horizon, route and goal, fence, obstacles and gates."""
     place = eye.place
     angles = np.linspace(0.0, math.tau, 73)
     skyline = np.stack([np.cos(angles), np.sin(angles), np.zeros(73)], axis=1) * _HORIZON_M + np.array(place)
@@ -100,21 +102,12 @@ def _standing(frame: Frame, eye: Camera, mission: Mission | None, fence: Fence) 
         scene.append(Lines(_fence(fence, max(place[2], 2.0)), Tone.OBSTACLE, 2))
     if mission is None:
         return scene
+    guide = frame.guide or Guide()
     for obstacle in mission.obstacle:
         guarded = bool(frame.guarded_by) and obstacle.name == frame.guarded_by
-        tone = Tone.WARN if guarded else Tone.BESIDE
+        tone = Tone.WARN if guarded else goals_inside.tone_of(obstacle.name, guide)
         scene.append(Lines(wireframe.contours(obstacle, place), tone, far=_DIM_M))
-    if mission.target is not None:
-        target = np.array(mission.target.position)
-        ring = wireframe.level_circle(target, max(mission.target.radius, 0.2))
-        foot = np.array([target, target * (1.0, 1.0, 0.0)])
-        scene.append(
-            Lines(np.concatenate([ring, wireframe.diamond(target, 0.15)]), Tone.TARGET, through=True)
-        )
-        scene.append(Lines(wireframe.path(foot), Tone.ROUTE, 4))
-    if mission.route:
-        scene.insert(2, Lines(wireframe.path(np.array(mission.path)), Tone.ROUTE, 5))
-    return scene
+    return [*scene[:2], *goals_inside.ways(mission, guide), *scene[2:]]
 
 
 def _fence(fence: Fence, seen_up: float) -> Floats:
@@ -197,11 +190,11 @@ def _vehicle(frame: Frame) -> list[Lines]:
 
 
 def _labels(canvas: Canvas, frame: Frame, eye: Camera, solids: Solids) -> None:
-    """Write names over what is seen: the target, through everything, with how far it is; gates with their numbers."""
+    """Write names over what is seen, gates with their numbers; the goal, through everything, with how far it is."""
     mission, vehicle = frame.run.mission, frame.snapshot.vehicle
     if mission is None or vehicle is None:
         return
-    here = tuple(vehicle.position)[:3]
+    here = (vehicle.position[0], vehicle.position[1], vehicle.position[2])
     numbers = {gate.name: f"gate {number}" for number, gate in enumerate(gates(mission), 1)}
     for obstacle in mission.obstacle:
         lower, upper = extent(obstacle)
@@ -210,10 +203,9 @@ def _labels(canvas: Canvas, frame: Frame, eye: Camera, solids: Solids) -> None:
             tone = Tone.WARN if obstacle.name == frame.guarded_by else Tone.MUTED
             name = numbers.get(obstacle.name, obstacle.name)
             _label(canvas, visible(eye, solids, np.array((x, y, upper[2] + 0.15))), name, tone)
-    if mission.target is not None:
-        x, y, z = mission.target.position
-        words = f"target {math.dist(here, (x, y, z)):.1f} m"
-        _label(canvas, visible(eye, NOTHING, np.array((x, y, z + 0.4))), words, Tone.TARGET)
+    guide = frame.guide or Guide()
+    if (goal := goals_inside.aim(mission, guide)) is not None:
+        goals_inside.draw_goal(canvas, eye, goal, guide, way_to(goal, (*here, vehicle.position[3])))
 
 
 def _label(canvas: Canvas, dot: tuple[float, float] | None, words: str, tone: Tone) -> None:

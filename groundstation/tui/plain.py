@@ -17,7 +17,10 @@ from groundstation.bus import Bus
 from groundstation.console import Console, Snapshot
 from groundstation.messages import CommandKind, FlightMode, MappingMode, Preset, Severity
 from groundstation.run import Run
+from groundstation.training.coach import LiveCoach
+from groundstation.training.director import Director
 from groundstation.training.follower import MissionFollower
+from groundstation.training.guide import guide_of
 from groundstation.tui.acts import ACTS, BY_NAME, Act, Ask, coupled, in_air
 from groundstation.tui.checks import checks
 from groundstation.tui.choices import CHOICES, CHOICES_BY_NAME, Wishes
@@ -48,6 +51,8 @@ class PlainFlight:
         supervisor: Says how the other processes are.
         tell: Prints a line.
         hand: The on-screen stick's deflection, or None where another device is in use.
+        director: Knows how the mission is going, asked anew each time; None without one.
+        coach: Tells the trainee what to do instead, if there is one.
 
     Attributes:
         left: The operator wants to leave.
@@ -62,7 +67,11 @@ class PlainFlight:
         supervisor: Supervisor,
         tell: Callable[[str], None],
         hand: Hand | None,
+        *,
+        director: Callable[[], Director | None] = lambda: None,
+        coach: LiveCoach | None = None,
     ) -> None:
+        self._director, self._coach = director, coach
         self._run, self._console, self._supervisor, self._tell = run, console, supervisor, tell
         self._hand = hand
         self._answers, self._wishes, self._guard = Answers(), Wishes(), GuardWatch()
@@ -70,7 +79,7 @@ class PlainFlight:
         self._asked: tuple[Callable[[], None], frozenset[str], float] | None = None
         self._confirmed_real = run.simulated
         self._next_line = self._next_poll = 0.0
-        self._last, self._state = "", ()
+        self._last, self._state, self._coaching = "", (), ""
         self.left = False
         self.yaw_range = run.settings.mapping.yaw_range
         self.snapshot = console.snapshot()
@@ -86,6 +95,7 @@ class PlainFlight:
         if self._asked and snapshot.t > self._asked[2]:
             self._asked = None
             self._tell("Not confirmed: nothing was done.")
+        self._coaching = self._coached(snapshot)
         self._tell_events(snapshot)
         status, pilot = snapshot.status, snapshot.pilot
         state = (status and (status.mode, status.armed, status.in_air), pilot and pilot.phase)
@@ -212,7 +222,7 @@ class PlainFlight:
         self._answers.sent(self._console.command(kind, value), kind, self.snapshot.t)
 
     def _frame(self) -> Frame:
-        snapshot = self.snapshot
+        snapshot, director = self.snapshot, self._director()
         return Frame(
             snapshot=snapshot,
             run=self._run,
@@ -224,7 +234,16 @@ class PlainFlight:
             notes=tuple(self._answers.notes),
             track=self._track,
             history=self._history,
+            figures=director.figures if director is not None else None,
+            guide=guide_of(director, snapshot.t) if director is not None else None,
+            coaching=self._coaching,
         )
+
+    def _coached(self, snapshot: Snapshot) -> str:
+        director = self._director()
+        if self._coach is None or director is None:
+            return ""
+        return self._coach.look(snapshot, guide_of(director, snapshot.t), director.clearance)
 
     def _tell_events(self, snapshot: Snapshot) -> None:
         for note in merged(snapshot.events, tuple(self._answers.notes), _EVENTS):
@@ -253,9 +272,18 @@ def fly_plainly(run: Run, bus: Bus, supervisor: Supervisor) -> int:
     from drivers.stick import StickSender as Sender
 
     stick = Sender(str(run.hand)) if run.hand else None
-    follower = MissionFollower(run.mission, bus) if run.mission else None
+    follower = MissionFollower(run.mission, bus, run.par) if run.mission else None
     hand = Hand() if stick is not None else None
-    flight = PlainFlight(run, Console(bus, "plain"), supervisor, _print, hand)
+    coach = LiveCoach(run, lambda words: bus.event(Severity.INFO, words))
+    flight = PlainFlight(
+        run,
+        Console(bus, "plain"),
+        supervisor,
+        _print,
+        hand,
+        director=lambda: follower.director if follower is not None else None,
+        coach=coach,
+    )
     keepalive = Keepalive(lambda: _send_stick(stick, hand, flight)) if stick is not None else None
     if keepalive is not None:
         keepalive.start()

@@ -4,11 +4,15 @@ from __future__ import annotations
 
 import gc
 import sys
+from collections.abc import Callable
 
 from groundstation.bus import Bus
 from groundstation.console import Console
+from groundstation.messages import Severity
 from groundstation.run import Run
+from groundstation.training.coach import LiveCoach
 from groundstation.training.follower import MissionFollower
+from groundstation.training.workload import Workload
 from groundstation.tui.app import FlightApp
 from groundstation.tui.frame import Reader, Supervisor
 from groundstation.tui.hand import StickSender
@@ -22,10 +26,13 @@ def run_screen(
     console: Reader,
     supervisor: Supervisor,
     stick: StickSender | None,
+    *,
     follower: MissionFollower | None = None,
+    coach: LiveCoach | None = None,
+    on_workload: Callable[[Workload], None] = lambda _: None,
 ) -> int:
     """Show the screen until the operator leaves; return the exit code."""
-    app = FlightApp(run, console, supervisor, stick, follower=follower)
+    app = FlightApp(run, console, supervisor, stick, follower=follower, coach=coach, on_workload=on_workload)
     # A collection that looks through all the modules again takes 0.2 s, and a stick is stale after 0.1 s.
     gc.collect()
     gc.freeze()
@@ -47,8 +54,17 @@ def fly_on_screen(run: Run, bus: Bus, supervisor: Supervisor) -> int:
 
     stick = Sender(str(run.hand)) if run.hand else None
     try:
-        follower = MissionFollower(run.mission, bus) if run.mission else None
-        return run_screen(run, Console(bus, "screen"), supervisor, stick, follower)
+        follower = MissionFollower(run.mission, bus, run.par) if run.mission else None
+        return run_screen(
+            run,
+            Console(bus, "screen"),
+            supervisor,
+            stick,
+            follower=follower,
+            coach=LiveCoach(run, lambda words: bus.event(Severity.INFO, words)),
+            # As an event it stands in the recording.
+            on_workload=lambda workload: bus.event(Severity.INFO, workload.words),
+        )
     finally:
         if stick is not None:
             stick.close()

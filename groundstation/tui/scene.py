@@ -1,4 +1,4 @@
-"""A flat map as pure drawing, what stands still: obstacles, fence, gates, route, target. `moving` has the rest."""
+"""A flat map as pure drawing, what stands still. `goals` has what the mission leads to, `moving` the rest."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _SIDES = 32
 def draw_world(
     canvas: Canvas, view: View, mission: Mission | None, depth: float, fence: Fence = NO_FENCE
 ) -> None:
-    """Draw what stands still: grid, start, fence, pads, obstacles, route, gates and target.
+    """Draw what stands still: grid, start, fence, pads and obstacles.
 
     Args:
         canvas: Drawn on.
@@ -41,7 +41,7 @@ def draw_world(
         level = float(view.y(0.0))
         canvas.line([0, canvas.width - 1], [level, level], Tone.EARTH)
     draw_fence(canvas, view, fence, Tone.OBSTACLE)
-    _cross(canvas, float(view.x(0.0)), float(view.y(0.0)), 2, Tone.MUTED)
+    cross(canvas, float(view.x(0.0)), float(view.y(0.0)), 2, Tone.MUTED)
     if mission is None:
         return
     for pad in mission.pad:
@@ -53,13 +53,6 @@ def draw_world(
         if solid:
             _hatch(canvas, view, outline)
         canvas.line(view.x(outline[:, 0]), view.y(outline[:, 1]), Tone.BESIDE if solid else Tone.OBSTACLE)
-    _route(canvas, view, mission)
-    for gate in gates(mission):
-        _way_through(canvas, view, gate)
-    if mission.target is not None:
-        at = view.plane.flat(mission.target.position)
-        ring(canvas, view, (*at, max(mission.target.radius, 4.0 * view.scale)), Tone.TARGET)
-        _cross(canvas, float(view.x(at[0])), float(view.y(at[1])), 1, Tone.TARGET)
 
 
 def draw_fence(canvas: Canvas, view: View, fence: Fence, tone: Tone) -> None:
@@ -142,6 +135,12 @@ def ring(canvas: Canvas, view: View, circle: tuple[float, float, float], tone: T
     canvas.plot(view.x(across + radius * np.cos(angles)), view.y(upward + radius * np.sin(angles)), tone)
 
 
+def cross(canvas: Canvas, x: float, y: float, arm: int, tone: Tone) -> None:
+    """Draw a cross of so long arms, dots."""
+    canvas.line([x - arm, x + arm], [y, y], tone)
+    canvas.line([x, x], [y - arm, y + arm], tone)
+
+
 def silhouette(part: Primitive, view: View) -> Floats:
     """Return the outline of a part in the view's plane, m, closed, shape (n, 2)."""
     across, upward = view.plane.flat(part.center)
@@ -202,47 +201,8 @@ def _hatch(canvas: Canvas, view: View, outline: Floats) -> None:
     canvas.plot(columns[inside], rows[inside], Tone.BESIDE)
 
 
-def _route(canvas: Canvas, view: View, mission: Mission) -> None:
-    """Draw the way the mission asks for, dotted, with a head on each leg that says which way it goes."""
-    if not mission.route:
-        return
-    x, y = view.dots(np.array(mission.path))
-    canvas.line(x, y, Tone.ROUTE, gap=4)
-    for index in range(len(x) - 1):
-        _head(canvas, (x[index], y[index]), (x[index + 1], y[index + 1]), 0.5, 3.0)
-
-
-def _head(
-    canvas: Canvas, start: tuple[float, float], end: tuple[float, float], share: float, size: float
-) -> None:
-    """Draw an arrow's head on a line, dots; none where the line is too short to have a direction."""
-    length = math.dist(start, end)
-    if not size * 2 < length < math.inf:
-        return
-    x, y = start[0] + share * (end[0] - start[0]), start[1] + share * (end[1] - start[1])
-    angle = math.atan2(end[1] - start[1], end[0] - start[0])
-    for side in (2.5, -2.5):
-        canvas.line(
-            [x, x + size * math.cos(angle + side)], [y, y + size * math.sin(angle + side)], Tone.ROUTE
-        )
-
-
-def _way_through(canvas: Canvas, view: View, gate: Gate) -> None:
-    """Draw an arrow through a gate."""
-    yaw = math.radians(gate.yaw_deg)
-    ahead = np.array([math.cos(yaw), math.sin(yaw), 0.0])
-    x, y = view.dots(np.array(gate.center) + np.outer([-0.6, 0.6], ahead))
-    canvas.line(x, y, Tone.ROUTE)
-    _head(canvas, (x[0], y[0]), (x[1], y[1]), 1.0, 3.0)
-
-
 def _pad(canvas: Canvas, view: View, pad: Pad) -> None:
     across, upward = view.plane.flat(pad.position)
     if view.plane is TOP:
         ring(canvas, view, (across, upward, max(pad.radius, 3.0 * view.scale)), Tone.MUTED)
-    _cross(canvas, float(view.x(across)), float(view.y(upward)), 1, Tone.MUTED)
-
-
-def _cross(canvas: Canvas, x: float, y: float, arm: int, tone: Tone) -> None:
-    canvas.line([x - arm, x + arm], [y, y], tone)
-    canvas.line([x, x], [y - arm, y + arm], tone)
+    cross(canvas, float(view.x(across)), float(view.y(upward)), 1, Tone.MUTED)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from groundstation.messages import Severity
 from groundstation.tui.alarms import Alarm, Alarms
 from groundstation.tui.frame import Frame
@@ -28,6 +30,8 @@ class Banner(Instrument):
             tone = Tone.WARN if alarm.seen else _TONES[alarm.severity]
             left = f" {headline(alarm, frame.now)}"
         right = _right(frame.alarms, alarm)
+        if alarm is not None and len(left) + len(right) > width:
+            left = f" {headline(replace(alarm, text=_shorter(alarm.text)), frame.now)}"
         room = max(width - len(right), 0)
         return [[*fit([(left, tone), (" " * room, tone)], room), (right, tone)]]
 
@@ -38,6 +42,12 @@ def headline(alarm: Alarm, now: float) -> str:
     seen = " seen" if alarm.seen else ""
     over = "" if alarm.active else f" {span_of_time(now - alarm.ended)} ago"
     return f"{PRIORITIES[alarm.severity]}{times}{seen}{over}  {alarm.text}"
+
+
+def _shorter(text: str) -> str:
+    """Return a refusal's reason without what was refused: where there is little room that is what must fit."""
+    said, _, reason = text.partition(" refused: ")
+    return reason[:1].upper() + reason[1:] if reason else said
 
 
 def _right(alarms: Alarms, shown: Alarm | None) -> str:

@@ -9,19 +9,24 @@ from textual import events
 
 from groundstation.messages import Phase, PilotState
 from groundstation.run import Run
+from groundstation.training.guide import Guide
 from groundstation.training.mission import Fence
-from groundstation.tui import moving, scene
+from groundstation.tui import goals, moving, scene
 from groundstation.tui.camera import Solids
 from groundstation.tui.canvas import Canvas
+from groundstation.tui.directions import title, way_of
 from groundstation.tui.frame import Frame
+from groundstation.tui.ghosts import draw_ghost
 from groundstation.tui.inside import camera, draw_inside
-from groundstation.tui.rows import Row, quantity
+from groundstation.tui.rows import Row, Span, quantity, wrapped
 from groundstation.tui.theme import Tone
 from groundstation.tui.view import TOP, Plane, View, framing, side_of, zoomed
 from groundstation.tui.widgets.instrument import Instrument
 from groundstation.tui.wireframe import solids
 
 _NAMES_FROM = 60
+# What the first line leaves at its end, cells.
+_NORTH = 6
 _INSIDE_EVERY = 2
 # Older echoes may have gone, s. As the pilot calls them where it guards.
 _ECHOES_S = 0.5
@@ -149,14 +154,17 @@ class Overview(Instrument):
         points = [point for point in points if all(map(math.isfinite, point))]
         view = self._framed(frame, points, 2 * width, 4 * height, plane)
         canvas = self._standing(frame, view, seen[plane.depth]).copy()
+        if frame.guide is not None and (way := way_of(frame)) is not None:
+            goals.draw_goal(canvas, view, frame.guide, way.distance)
         moving.draw_trail(canvas, view, frame.track.points(), frame.now)
+        draw_ghost(canvas, view, frame, named=canvas.columns >= _NAMES_FROM)
         _draw_echoes(canvas, view, frame, seen)
         if pilot is not None:
             _draw_led(canvas, view, frame, pilot, seen)
         moving.draw_vehicle(canvas, view, seen)
         scene.draw_legend(canvas, view)
-        if plane is TOP:
-            _draw_air(canvas, frame)
+        told = _told(frame, canvas.columns)
+        _write(canvas, [*told, *(_air(frame) if plane is TOP else [])])
         return canvas.to_rows()
 
     def _framed(
@@ -175,13 +183,15 @@ class Overview(Instrument):
 
     def _standing(self, frame: Frame, view: View, depth: float) -> Canvas:
         mission = frame.run.mission
-        level = scene.levels(mission, depth, view)
-        if self._ground is None or self._ground_of != (view, level):
+        guide = frame.guide or Guide()
+        state = view, scene.levels(mission, depth, view), guide.reached, guide.passed
+        if self._ground is None or self._ground_of != state:
             self._ground = Canvas(view.width // 2, view.height // 4)
             scene.draw_world(self._ground, view, mission, depth, fence_of(frame.run))
+            goals.draw_ways(self._ground, view, mission, guide)
             if self._ground.columns >= _NAMES_FROM:
                 scene.label_obstacles(self._ground, view, mission)
-            self._ground_of = (view, level)
+            self._ground_of = state
         return self._ground
 
 
@@ -211,8 +221,21 @@ def _draw_led(canvas: Canvas, view: View, frame: Frame, pilot: PilotState, seen:
     moving.draw_predicted(canvas, view, seen, (east, north, up, yaw), stop)
 
 
-def _draw_air(canvas: Canvas, frame: Frame) -> None:
-    """Write what pushes the vehicle: the mission's mean wind where it is simulated, and what the model finds."""
+def _told(frame: Frame, columns: int) -> list[Span]:
+    """Return in up to two lines which goal is next, beside where north is."""
+    if frame.guide is None or frame.guide.goal is None:
+        return []
+    return [(line, Tone.TARGET) for line in wrapped(title(frame.guide), columns - _NORTH)[:2]]
+
+
+def _write(canvas: Canvas, lines: list[Span]) -> None:
+    """Write lines into the upper left corner."""
+    for row, (text, tone) in enumerate(lines):
+        canvas.letters(1, row, text[: canvas.columns - _NORTH], tone)
+
+
+def _air(frame: Frame) -> list[Span]:
+    """Return what pushes the vehicle: the mission's mean wind where it is simulated, and what the model finds."""
     words: list[str] = []
     mission, pilot = frame.run.mission, frame.pilot
     if frame.run.simulated and mission is not None and math.hypot(*mission.wind.mean) > 0.0:
@@ -221,8 +244,7 @@ def _draw_air(canvas: Canvas, frame: Frame) -> None:
     if pilot is not None and math.hypot(*pilot.push) > _CALM:
         east, north, _ = pilot.push
         words.append(f"push felt {_arrow(east, north)} {quantity(math.hypot(*pilot.push), 'm/s²', 1)}")
-    for row, text in enumerate(words):
-        canvas.letters(1, row, text, Tone.MUTED)
+    return [(text, Tone.MUTED) for text in words]
 
 
 def _arrow(east: float, north: float) -> str:

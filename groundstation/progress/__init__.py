@@ -1,0 +1,1 @@
+"""How every pilot comes along: what they flew, what they can do, what comes next."""

@@ -1,0 +1,43 @@
+"""The flights of a mission within one run, each measured for itself: landed and up again is another attempt."""
+
+from __future__ import annotations
+
+from groundstation.training.director import Stage
+from groundstation.training.measurer import HandSight, Measurer, VehicleSight
+from groundstation.training.mission import Mission
+
+
+class Attempts:
+    """Measures a run's flights as they are flown.
+
+    Args:
+        mission: What is flown.
+        radius: The vehicle's, m.
+
+    Attributes:
+        current: Measures the flight under way, or the last one.
+        landed: Those that ended, in their order.
+    """
+
+    def __init__(self, mission: Mission, radius: float) -> None:
+        self._mission, self._radius = mission, radius
+        self.current = Measurer(mission, radius)
+        self.landed: list[Measurer] = []
+
+    @property
+    def judged(self) -> Measurer:
+        """The one that a run is judged by: the last that landed, else the one under way."""
+        return self.landed[-1] if self.landed else self.current
+
+    def show(self, sight: VehicleSight | HandSight) -> None:
+        """Take note of a sight; they come in the order of their times."""
+        if isinstance(sight, HandSight):
+            self.current.hand(sight)
+            return
+        if self.current.director.stage is Stage.DONE and sight.armed and sight.in_air:
+            coupled = self.current.coupled
+            self.current = Measurer(self._mission, self._radius, coupled=coupled)
+        before = self.current.director.stage
+        self.current.vehicle(sight)
+        if self.current.director.stage is Stage.DONE and before is not Stage.DONE:
+            self.landed.append(self.current)

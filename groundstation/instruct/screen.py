@@ -64,7 +64,7 @@ class InstructorApp(App[int]):
     #head, #foot { height: 1; background: $pane; padding: 0 1; color: $muted; }
     #map { width: 1fr; }
     #side { width: 52; }
-    #trainee { height: 12; }
+    #trainee { height: 15; }
     #offers { height: 12; }
     #events { height: 1fr; }
     Instrument { border: round $frame; border-title-color: $muted; border-subtitle-color: $muted; background: $ink; }

@@ -15,8 +15,8 @@ from groundstation.recording.entities import SCENE
 from groundstation.recording.lanes import LANES
 
 APPLICATION = "groundstation"
-# 5: what the flight is held against, and where it lost points; guidance of the hand, and a ghost in the scene; what an
-#    instructor or a timetable let happen.
+# 5: what the flight is held against, and where it lost points; guidance of the hand, and a ghost in the scene; what
+#    an instructor or a timetable let happen.
 # 4: all that a tick of the servo was made from, to the last bit.
 # 3: every attitude and body rate that the vehicle tells, and commands and answers as numbers.
 # 2: what stands around equations (4) and (5), and the vehicle's own distance sensors. A reader of 5 reads 1 to 4.

@@ -38,6 +38,7 @@ from groundstation.tui.everywhere import KEYS
 from groundstation.tui.frame import Frame, Reader, Supervisor, workspace
 from groundstation.tui.guarding import GuardWatch
 from groundstation.tui.hand import Hand, StickSender
+from groundstation.tui.instructing import Instructing
 from groundstation.tui.keepalive import Keepalive
 from groundstation.tui.milestones import Milestones
 from groundstation.tui.pace import PaintPace
@@ -89,6 +90,7 @@ class FlightApp(Commanding):
         stick: Takes the on-screen stick's deflection, or None where another device is in use.
         follower: Follows the mission, if there is one.
         coach: Tells the trainee what to do instead, if there is one.
+        instructing: Lets happen what an instructor would.
         best: The pilot's best score in this mission before; None where there is none.
         on_workload: Keeps what was answered after a flight.
         clock: Monotonic seconds, the bus's clock.
@@ -108,6 +110,7 @@ class FlightApp(Commanding):
         *,
         follower: MissionFollower | None = None,
         coach: LiveCoach | None = None,
+        instructing: Instructing | None = None,
         best: Score | None = None,
         on_workload: Callable[[Workload], None] = lambda _: None,
         clock: Callable[[], float] = time.monotonic,
@@ -126,6 +129,7 @@ class FlightApp(Commanding):
         self._next_poll = self._next_look = self._next_score = 0.0
         self._keepalive = Keepalive(self._send_stick, clock)
         self._follower, self._coach = follower, coach
+        self._instructing = instructing or Instructing(None)
         self.best, self._on_workload = best, on_workload
         self._score: Score | None = None
         self._flight = FlightScreen(self.hand if stick is not None else None)
@@ -165,6 +169,8 @@ class FlightApp(Commanding):
         for note in self._answers.take(snapshot):
             severity = "error" if note.severity is Severity.ALARM else "warning"
             self.notify(note.text, severity=severity, timeout=6.0, markup=False)
+        for refusal in self._instructing.refusals():
+            self.notify(refusal, severity="warning", timeout=6.0, markup=False)
         stale_s = self._flight_run.settings.safety.state_stale_s
         if snapshot.vehicle is not None and snapshot.vehicle.valid:
             east, north, up, _ = snapshot.vehicle.position
@@ -355,6 +361,7 @@ class FlightApp(Commanding):
         yield SystemCommand("Bell on/off (b)", "The bell rings for alarms.", self.action_mute)
         yield SystemCommand("Next theme (ctrl+t)", "Dark, light, high contrast.", self.action_next_theme)
         yield from self._flight.commands()
+        yield from self._instructing.commands()
         yield SystemCommand("Help (?)", "All keys.", self.action_help)
         yield SystemCommand("Quit (q)", "Asks first while the vehicle is in the air.", self.action_quit)
 

@@ -10,6 +10,7 @@ from groundstation.bus import Bus
 from groundstation.console import Console
 from groundstation.messages import Severity
 from groundstation.run import Run
+from groundstation.training.asking import Asker
 from groundstation.training.coach import LiveCoach
 from groundstation.training.follower import MissionFollower
 from groundstation.training.workload import Workload
@@ -17,6 +18,7 @@ from groundstation.tui.app import FlightApp
 from groundstation.tui.frame import Reader, Supervisor
 from groundstation.tui.hand import StickSender
 from groundstation.tui.hangup import HangupWatch
+from groundstation.tui.instructing import Instructing
 
 _SWITCH_S = 0.001
 
@@ -29,10 +31,20 @@ def run_screen(
     *,
     follower: MissionFollower | None = None,
     coach: LiveCoach | None = None,
+    instructing: Instructing | None = None,
     on_workload: Callable[[Workload], None] = lambda _: None,
 ) -> int:
     """Show the screen until the operator leaves; return the exit code."""
-    app = FlightApp(run, console, supervisor, stick, follower=follower, coach=coach, on_workload=on_workload)
+    app = FlightApp(
+        run,
+        console,
+        supervisor,
+        stick,
+        follower=follower,
+        coach=coach,
+        instructing=instructing,
+        on_workload=on_workload,
+    )
     # A collection that looks through all the modules again takes 0.2 s, and a stick is stale after 0.1 s.
     gc.collect()
     gc.freeze()
@@ -62,6 +74,7 @@ def fly_on_screen(run: Run, bus: Bus, supervisor: Supervisor) -> int:
             stick,
             follower=follower,
             coach=LiveCoach(run, lambda words: bus.event(Severity.INFO, words)),
+            instructing=Instructing(Asker(bus, "instructor") if run.simulated else None),
             # As an event it stands in the recording.
             on_workload=lambda workload: bus.event(Severity.INFO, workload.words),
         )

@@ -7,6 +7,7 @@ out at a steady rate while the screen turns; a screen that hangs is a stick gone
 from __future__ import annotations
 
 import asyncio
+import gc
 import importlib
 import signal
 import time
@@ -49,6 +50,7 @@ from groundstation.tui.widgets.stick import YAW, stays
 
 _POLL_S = 0.1
 _LOOK_S = 0.5
+_AFTER_PAGE_S = 0.3
 
 
 def _everywhere() -> list[BindingType]:
@@ -232,8 +234,13 @@ class FlightApp(Commanding):
 
     def action_fly(self) -> None:
         """Go back to the flight."""
+        if self.screen is self._flight:
+            return
         while self.screen is not self._flight:
             self.pop_screen()
+        if not coupled(self._snapshot):
+            # What a page leaves is looked through where 0.2 s harm nobody; by itself it hardly is, see `running`.
+            self.set_timer(_AFTER_PAGE_S, gc.collect)
 
     def action_review(self) -> None:
         """Open the recording in the viewer."""

@@ -19,7 +19,7 @@ def test_the_expert_passes_the_check_ride_over_real_processes(tmp_path):
     assert measures["landing_error_m"] < 0.7
     # The handle that the timetable took away was lost, waited for, and coupled again.
     told = done.stderr.splitlines()
-    assert any("The haptic device is gone" in line for line in told)
-    assert [line for line in told if line in {"holding", "flying", "landing"}] == [
-        *("flying", "holding", "flying", "landing")
+    lost = next(number for number, line in enumerate(told) if "The haptic device is gone" in line)
+    assert [line for line in told[lost:] if line in {"holding", "flying", "landing"}] == [
+        *("holding", "flying", "landing")
     ]

@@ -21,6 +21,7 @@ from groundstation.evaluation import options as evaluate
 from groundstation.export import options as export
 from groundstation.identification import options as identify
 from groundstation.instruct import options as instruct
+from groundstation.progress import options as progress
 from groundstation.replay import options as replay
 from groundstation.report import options as report
 from groundstation.review import options as review
@@ -41,6 +42,7 @@ _COMMANDS: dict[str, ModuleType] = {
     "evaluate": evaluate,
     "missions": missions,
     "instruct": instruct,
+    "progress": progress,
     "devices": devices,
 }
 
@@ -59,6 +61,7 @@ examples:
   groundstation evaluate --delay 0,0.1,0.3                   compare controllers over hundreds of virtual flights
   groundstation missions list                                what there is to fly
   groundstation instruct                                     wind, delay and failures while a trainee flies
+  groundstation progress                                     how you come along, and what to fly next
 
 exit codes: 0 done, or the mission's criteria hold; 1 they do not, or a process died; 2 bad input
 """

@@ -8,9 +8,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 from enum import StrEnum
 from math import inf
-from typing import NamedTuple
 
 from groundstation.conditions import Conditions
 from groundstation.config import Safety
@@ -103,7 +103,8 @@ class Fault(StrEnum):
     DISK_FULL = "disk full, or folder read-only"
 
 
-class Row(NamedTuple):
+@dataclass(frozen=True, slots=True)
+class Row:
     """A row of the table.
 
     Attributes:

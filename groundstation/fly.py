@@ -5,7 +5,6 @@ from __future__ import annotations
 import argparse
 import contextlib
 import datetime
-import getpass
 import os
 import signal
 from collections.abc import Generator
@@ -18,6 +17,7 @@ from groundstation.bus import Bus
 from groundstation.config import Settings, check_flown_by_rate, load_settings, usual_file
 from groundstation.connecting import note
 from groundstation.errors import InputError
+from groundstation.login import login_name
 from groundstation.processes import Supervisor, free_port, running
 from groundstation.run import Run
 from groundstation.run_folder import new_run_id, run_folder, sweep_dead_runs
@@ -40,13 +40,14 @@ def fly(asked: argparse.Namespace) -> int:
         InputError: Something asked for cannot be.
     """
     _check(asked)
-    run = plan(asked)
+    run = accompanied(plan(asked), asked)
     note(asked)
     with started(run, asked) as (bus, supervisor):
         if asked.headless:
             from groundstation.headless import fly_headless
 
-            return fly_headless(run, bus, supervisor, as_json=asked.json, seed=asked.seed)
+            operator = asked.operator or "average"
+            return fly_headless(run, bus, supervisor, as_json=asked.json, operator=operator, seed=asked.seed)
         if asked.plain:
             from groundstation.tui.plain import fly_plainly
 
@@ -106,7 +107,7 @@ def plan(asked: argparse.Namespace) -> Run:
         log=str(log_stem(asked.logs, now, mission.name if mission else "flight")),
         viewer_url=_viewer(asked),
         controller=asked.controller,
-        pilot=_pilot(asked.pilot),
+        pilot=_pilot(asked),
         seed=asked.seed,
         terminal="" if asked.headless or asked.plain else terminal_path(),
         started=now.isoformat(timespec="milliseconds"),
@@ -119,6 +120,29 @@ def plan(asked: argparse.Namespace) -> Run:
     )
 
 
+def accompanied(run: Run, asked: argparse.Namespace) -> Run:
+    """Return a run with the ghost that is followed, and with guidance as strong as the pilot needs it.
+
+    By itself it guides only a hand that trains on the simulated vehicle, and a scripted hand needs neither.
+
+    Raises:
+        InputError: What the pilot has flown cannot be read.
+    """
+    if run.mission is None:
+        return run
+    from groundstation.progress.company import flown_by, ghost_of, guidance_of
+    from groundstation.training.curriculum import lessons
+
+    flights, best = flown_by(run.pilot, run.mission, asked.logs)
+    wanted = run.settings.training.guidance if asked.guidance is None else asked.guidance
+    if wanted == "auto":
+        trains = run.simulated and not asked.headless
+        wanted = guidance_of(run.mission, flights, [each.mission for each in lessons()]) if trains else 0.0
+    asked_ghost = "off" if asked.headless and not asked.ghost else asked.ghost
+    ghost = ghost_of(asked_ghost, run.mission, Path(run.mission_path), best)
+    return msgspec.structs.replace(run, ghost=ghost, guidance=wanted)
+
+
 def _check(asked: argparse.Namespace) -> None:
     """Refuse combinations that mean nothing, before anything starts."""
     if asked.headless and not asked.mission:
@@ -127,6 +151,8 @@ def _check(asked: argparse.Namespace) -> None:
         raise InputError(
             "--headless flies with the scripted hand; leave --device out, or give it a double: emulated:falcon."
         )
+    if asked.operator and not asked.headless:
+        raise InputError("--operator says who flies a --headless flight; add --headless.")
     if asked.json and not asked.headless:
         raise InputError("--json is the summary of a --headless flight; add --headless.")
     if asked.headless and asked.connect and not asked.confirm_real:
@@ -239,14 +265,11 @@ def _device(asked: argparse.Namespace, run_id: str) -> str:
     return asked.device
 
 
-def _pilot(named: str | None) -> str:
-    """Return who flies: as named, else who is logged in, where the system knows."""
-    if named is not None:
-        return named.strip()
-    try:
-        return getpass.getuser()
-    except (KeyError, OSError):
-        return ""
+def _pilot(asked: argparse.Namespace) -> str:
+    """Return who flies: as named, else who is logged in; the scripted hand is nobody unless it is given a name."""
+    if asked.pilot is not None:
+        return asked.pilot.strip()
+    return "" if asked.headless else login_name()
 
 
 def log_stem(folder: Path, now: datetime.datetime, name: str) -> Path:

@@ -10,7 +10,7 @@ from msgspec import Struct
 
 from groundstation.config import Settings
 from groundstation.run_folder import run_folder
-from groundstation.training.measures import Measures
+from groundstation.training.measures import Measures, Track
 from groundstation.training.mission import Mission
 
 RUN_FILE = "run.json"
@@ -39,6 +39,8 @@ class Run(Struct, frozen=True):
         par: What the flight is held against; None where nobody has flown the mission for reference.
         par_from: Whose it is, in words, or "".
         signing_key: The file with the key for MAVLink signing, or "". The key itself is nowhere but there.
+        ghost: The flight that is followed on map and in the viewer, or None.
+        guidance: How strongly the hand is guided towards the mission's way, 0 to 1.
     """
 
     run_id: str
@@ -59,6 +61,8 @@ class Run(Struct, frozen=True):
     par: Measures | None = None
     par_from: str = ""
     signing_key: str = ""
+    ghost: Track | None = None
+    guidance: float = 0.0
 
     @property
     def hand(self) -> Path | None:

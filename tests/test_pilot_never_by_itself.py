@@ -158,5 +158,5 @@ class NeverByItself(RuleBasedStateMachine):
 
 TestNeverByItself = NeverByItself.TestCase
 TestNeverByItself.settings = settings(
-    max_examples=25, stateful_step_count=25, deadline=None, suppress_health_check=list(HealthCheck)
+    max_examples=15, stateful_step_count=20, deadline=None, suppress_health_check=list(HealthCheck)
 )

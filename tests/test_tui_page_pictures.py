@@ -65,8 +65,8 @@ class Flown(CannedFollower):
 @pytest.mark.parametrize("size", SIZES, ids=lambda size: f"{size[0]}x{size[1]}")
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
 def test_a_page(snap_compare, page, size, monkeypatch):
-    monkeypatch.setattr("groundstation.tui.checks.os.access", lambda *_: True)
-    monkeypatch.setattr("groundstation.tui.checks.shutil.disk_usage", lambda _: Disk())
+    monkeypatch.setattr("groundstation.tui.checks_here.os.access", lambda *_: True)
+    monkeypatch.setattr("groundstation.tui.checks_here.shutil.disk_usage", lambda _: Disk())
     run = msgspec.structs.replace(
         canned_run(simulated=size[0] != 120),
         config="/home/me/groundstation.toml",

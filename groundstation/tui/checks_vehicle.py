@@ -157,8 +157,8 @@ def speeds(frame: Frame) -> Check:
         )
     used = bounded(limits, (told[0], told[1], told[2]))
     state = (
-        f"{used.horizontal_speed:.3g} m/s around, {used.vertical_speed:.3g} up and down; "
-        f"the vehicle's {told[0]:.3g}, {told[1]:.3g}, {told[2]:.3g}"
+        f"{used.horizontal_speed:.3g} m/s around, {used.vertical_speed:.3g} up, down; "
+        f"its own {told[0]:.3g}, {told[1]:.3g}, {told[2]:.3g}"
     )
     if used != limits:
         return Check("speed limits", _CAUTION, state, "[limits] allows more: the vehicle's are kept")

@@ -1,4 +1,4 @@
-"""Loaded by every process of a flight under test: SIGUSR1 has it hold the interpreter's lock, as native code that hangs."""
+"""Loaded by every process of a flight under test: at SIGUSR1 it holds the interpreter's lock, as hung code does."""
 
 import signal
 

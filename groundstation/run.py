@@ -23,7 +23,8 @@ class Run(Struct, frozen=True):
     Attributes:
         run_id: Names the bus and the run's folder.
         url: Where the vehicle is, as in `--connect`.
-        simulated: The vehicle is ours. Only for labels and for asking back, never for control.
+        simulated: The vehicle is ours. For labels, for asking back, and for what an instructor or a timetable lets
+            happen; never for control.
         device: Which haptic device, as `driver` or `driver:address`.
         mission: The mission, or None for free flight.
         mission_path: Its file, or "".

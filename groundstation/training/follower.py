@@ -30,7 +30,9 @@ from groundstation.training.sights import Sights
 from groundstation.training.story import Moment
 from sim.airframe import load_airframe
 
-_HELD_UP = "Held up for seconds, handle samples were missed: 'groundstation review --score' has the exact score."
+_HELD_UP = (
+    "Held up for seconds, handle samples were missed: 'groundstation review --score' has the exact score."
+)
 
 
 class MissionFollower:

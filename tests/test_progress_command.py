@@ -70,7 +70,7 @@ def test_a_table_for_people(capsys, logs):
     assert "2 of 23 missions passed, 7 min in 4 flights." in lines[0]
     assert lines[1].startswith("Next: ")
     (spring,) = [line for line in lines if line.split()[1:2] == ["spring"] and "▅" in line]
-    assert spring.split()[:6] == ["✓", "spring", "1", "90", "90", "▅▇"]
+    assert spring.split()[:6] == ["▸", "spring", "1", "90", "90", "▅▇"]
     assert spring.endswith("due")
     assert max(map(len, lines)) <= 80
     assert all(ord(sign) >= 32 for line in lines for sign in line)

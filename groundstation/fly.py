@@ -43,7 +43,7 @@ def fly(asked: argparse.Namespace) -> int:
     """
     while True:
         _check(asked)
-        run = plan(asked)
+        run = accompanied(plan(asked), asked)
         note(asked)
         with started(run, asked) as (bus, supervisor):
             ending = _flown(run, asked, bus, supervisor)
@@ -59,7 +59,10 @@ def _flown(run: Run, asked: argparse.Namespace, bus: Bus, supervisor: Supervisor
     if asked.headless:
         from groundstation.headless import fly_headless
 
-        return Ending(fly_headless(run, bus, supervisor, as_json=asked.json, seed=asked.seed))
+        operator = asked.operator or "average"
+        return Ending(
+            fly_headless(run, bus, supervisor, as_json=asked.json, operator=operator, seed=asked.seed)
+        )
     if asked.plain:
         from groundstation.tui.plain import fly_plainly
 
@@ -132,6 +135,29 @@ def plan(asked: argparse.Namespace) -> Run:
     )
 
 
+def accompanied(run: Run, asked: argparse.Namespace) -> Run:
+    """Return a run with the ghost that is followed, and with guidance as strong as the pilot needs it.
+
+    By itself it guides only a hand that trains on the simulated vehicle, and a scripted hand needs neither.
+
+    Raises:
+        InputError: What the pilot has flown cannot be read.
+    """
+    if run.mission is None:
+        return run
+    from groundstation.progress.company import flown_by, ghost_of, guidance_of
+    from groundstation.training.curriculum import lessons
+
+    flights, best = flown_by(run.pilot, run.mission, asked.logs)
+    wanted = run.settings.training.guidance if asked.guidance is None else asked.guidance
+    if wanted == "auto":
+        trains = run.simulated and not asked.headless
+        wanted = guidance_of(run.mission, flights, [each.mission for each in lessons()]) if trains else 0.0
+    asked_ghost = "off" if asked.headless and not asked.ghost else asked.ghost
+    ghost = ghost_of(asked_ghost, run.mission, Path(run.mission_path), best)
+    return msgspec.structs.replace(run, ghost=ghost, guidance=wanted)
+
+
 def _check(asked: argparse.Namespace) -> None:
     """Refuse combinations that mean nothing, before anything starts."""
     if asked.headless and not asked.mission:
@@ -140,6 +166,8 @@ def _check(asked: argparse.Namespace) -> None:
         raise InputError(
             "--headless flies with the scripted hand; leave --device out, or give it a double: emulated:falcon."
         )
+    if asked.operator and not asked.headless:
+        raise InputError("--operator says who flies a --headless flight; add --headless.")
     if asked.json and not asked.headless:
         raise InputError("--json is the summary of a --headless flight; add --headless.")
     if asked.headless and asked.connect and not asked.confirm_real:

@@ -130,6 +130,7 @@ class Cue(IntFlag):
     MISMATCH = 4
     GUARD = 8
     DAMPING = 16
+    GUIDANCE = 32
 
 
 class Severity(IntEnum):
@@ -248,7 +249,7 @@ class PilotState(Record):
         v_safe: The same after the guard.
         v_c: That within the limits: the velocity that the vehicle is meant to have. `Setpoint` makes it have it.
         force: As equation (5) gives it, world, N; `Handle` has what is rendered, damped, ramped and limited.
-        environment, mismatch, guard: The other cues as they are weighted into the force, world, N.
+        environment, mismatch, guard, guidance: The other cues as they are weighted into the force, world, N.
         damping: Likewise against the handle's velocity, handle frame, N.
         state_age: Age of the vehicle's state, s; infinite before the first.
         delay: Round trip that the controller reckons with, s.
@@ -282,6 +283,7 @@ class PilotState(Record):
     mismatch: ctypes.Array[_F64]
     guard: ctypes.Array[_F64]
     damping: ctypes.Array[_F64]
+    guidance: ctypes.Array[_F64]
     predicted: ctypes.Array[_F64]
     predicted_velocity: ctypes.Array[_F64]
     stop: ctypes.Array[_F64]
@@ -320,6 +322,7 @@ class PilotState(Record):
         ("mismatch", _F64 * 3),
         ("guard", _F64 * 3),
         ("damping", _F64 * 3),
+        ("guidance", _F64 * 3),
         ("predicted", _F64 * 4),
         ("predicted_velocity", _F64 * 3),
         ("stop", _F64 * 3),

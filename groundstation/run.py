@@ -10,7 +10,7 @@ from msgspec import Struct
 
 from groundstation.config import Settings
 from groundstation.run_folder import run_folder
-from groundstation.training.measures import Measures
+from groundstation.training.measures import Measures, Track
 from groundstation.training.mission import Mission
 
 RUN_FILE = "run.json"
@@ -23,7 +23,8 @@ class Run(Struct, frozen=True):
     Attributes:
         run_id: Names the bus and the run's folder.
         url: Where the vehicle is, as in `--connect`.
-        simulated: The vehicle is ours. Only for labels and for asking back, never for control.
+        simulated: The vehicle is ours. For labels, for asking back, and for what an instructor or a timetable lets
+            happen; never for control.
         device: Which haptic device, as `driver` or `driver:address`.
         mission: The mission, or None for free flight.
         mission_path: Its file, or "".
@@ -39,6 +40,8 @@ class Run(Struct, frozen=True):
         par: What the flight is held against; None where nobody has flown the mission for reference.
         par_from: Whose it is, in words, or "".
         signing_key: The file with the key for MAVLink signing, or "". The key itself is nowhere but there.
+        ghost: The flight that is followed on map and in the viewer, or None.
+        guidance: How strongly the hand is guided towards the mission's way, 0 to 1.
     """
 
     run_id: str
@@ -59,6 +62,8 @@ class Run(Struct, frozen=True):
     par: Measures | None = None
     par_from: str = ""
     signing_key: str = ""
+    ghost: Track | None = None
+    guidance: float = 0.0
 
     @property
     def hand(self) -> Path | None:

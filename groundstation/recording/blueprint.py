@@ -28,7 +28,9 @@ _TRAILS: Overrides = {
 }
 _AXIS = rrb.TimeAxis(link=rrb.components.LinkAxis.LinkToGlobal)
 # Rerun shows them by their paths' alphabet.
-_HAPPENED = (lanes.ALERT, lanes.GUARD, lanes.MODE, lanes.PHASE, lanes.POINTS, lanes.STAGE, lanes.VEHICLE)
+_HAPPENED = (
+    lanes.ALERT, lanes.GUARD, lanes.INTERVENTION, lanes.MODE, lanes.PHASE, lanes.POINTS, lanes.STAGE, lanes.VEHICLE,
+)  # fmt: skip
 # The velocities share their colours: one legend is enough.
 _FIRST = "Forward velocity"
 # From above: what is shown around a mission, m, and how wide and deep an eye sees, m a metre of its height.
@@ -192,6 +194,7 @@ def _hand() -> rrb.Grid:
 def _feel() -> rrb.Vertical:
     plots = rrb.Grid(
         _plot("Force by cue, N", schema.CUE_SIZES.path),
+        _plot("Guidance to the mission's way, N", schema.GUIDANCE_CUE.path),
         _plot("Energy of the hand's port, J", schema.HANDLE_ENERGY.path),
         _plot("K₁ in effect, 1/s, and phase margin, rad", schema.K1.path, schema.PHASE_MARGIN.path),
         _plot("Round trip, s, and what it leaves, share", schema.RECKONED.path, schema.SHARES.path),

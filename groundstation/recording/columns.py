@@ -151,6 +151,7 @@ _NUMBERS: tuple[tuple[Topic[Any], tuple[tuple[Quantity, Callable[[Rows], Numbers
             (schema.MISMATCH_CUE, _fields("mismatch")),
             (schema.GUARD_CUE, _fields("guard")),
             (schema.DAMPING_CUE, _fields("damping")),
+            (schema.GUIDANCE_CUE, _fields("guidance")),
             (schema.CUE_SIZES, _sizes("force", "environment", "mismatch", "guard", "damping")),
             (schema.CUES_ON, _fields("cues")),
             (schema.PREDICTED, _fields("predicted")),

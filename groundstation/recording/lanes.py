@@ -6,6 +6,8 @@ from dataclasses import dataclass
 from enum import Enum
 
 from groundstation.training.director import Stage
+from groundstation.training.events import DeviceLoss, GpsLoss, LinkLoss
+from groundstation.training.in_force import NOTHING, STATES
 from groundstation.training.score import UNFINISHED, YARDSTICKS
 
 
@@ -129,6 +131,15 @@ COMPENSATION = Lane(
     "Whether the vehicle's dynamics are compensated",
     (("off", Tone.IDLE), ("on", Tone.GOOD)),
 )
+_FAULTS = frozenset({STATES[LinkLoss], STATES[DeviceLoss], STATES[GpsLoss]})
+INTERVENTION = Lane(
+    "/state/intervention",
+    "What an instructor or the mission's timetable does, the gravest of it; from the first on",
+    (
+        (NOTHING, Tone.IDLE),
+        *((word, Tone.FAULT if word in _FAULTS else Tone.WARNING) for word in STATES.values()),
+    ),
+)
 QUIET, WARNING, COLLISION, ALARM = "quiet", "warning", "collision", "alarm"
 ALERT = Lane(
     "/state/alert",
@@ -146,4 +157,5 @@ POINTS = Lane(
 )
 LANES: tuple[Lane, ...] = (
     ALERT, POINTS, PHASE, MODE, STREAM, VEHICLE, DEVICE_STATE, STAGE, MAPPING, PRESET, GUARD, COMPENSATION,
+    INTERVENTION,
 )  # fmt: skip

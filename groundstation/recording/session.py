@@ -18,7 +18,9 @@ from groundstation.recording.echoes import Echoes
 from groundstation.recording.feed import LiveFeed
 from groundstation.recording.file import FlightFile, RecordingError
 from groundstation.recording.gauges import Gauges
+from groundstation.recording.ghost import Ghost
 from groundstation.recording.incidents import Incidents
+from groundstation.recording.interventions import Interventions
 from groundstation.recording.item import Item
 from groundstation.recording.motion import Motion
 from groundstation.recording.parts import part_path
@@ -55,6 +57,8 @@ class Translator:
         self._gauges = Gauges(start, run.settings.shield)
         self._incidents = Incidents(start)
         self._story = Story(start)
+        self._ghost = Ghost(start, run.ghost)
+        self._interventions = Interventions(start)
         self._device = b""
 
     def opening(self) -> Iterator[Item]:
@@ -75,6 +79,8 @@ class Translator:
         yield from self._gauges.chunks(batch)
         yield from self._incidents.chunks(batch)
         yield from self._story.chunks(batch)
+        yield from self._ghost.chunks(batch)
+        yield from self._interventions.chunks(batch)
         for report in batch.of(DEVICE_REPORT):
             if report.present and (known := bytes(report)[_AFTER_TIME:]) != self._device:
                 self._device = known

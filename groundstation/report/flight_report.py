@@ -23,7 +23,7 @@ from groundstation.training.mission import Mission
 
 # More samples a page's width does not show, and a mail does not like.
 _SHOWN = 1200
-_LANES = (lanes.MODE, lanes.PHASE, lanes.STAGE, lanes.GUARD, lanes.MAPPING, lanes.PRESET)
+_LANES = (lanes.MODE, lanes.PHASE, lanes.STAGE, lanes.GUARD, lanes.MAPPING, lanes.PRESET, lanes.INTERVENTION)
 
 
 class Summary(NamedTuple):

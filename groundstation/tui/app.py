@@ -41,6 +41,7 @@ from groundstation.tui.everywhere import KEYS
 from groundstation.tui.frame import Frame, Reader, Supervisor, workspace
 from groundstation.tui.guarding import GuardWatch
 from groundstation.tui.hand import Hand, StickSender
+from groundstation.tui.instructing import Instructing
 from groundstation.tui.keepalive import Keepalive
 from groundstation.tui.milestones import Milestones
 from groundstation.tui.pace import PaintPace
@@ -95,6 +96,7 @@ class FlightApp(Commanding):
         coach: Tells the trainee what to do instead, if there is one.
         desk: Knows the pilots and the course; the one of the run's folder where none is given.
         keeper: Keeps the flights that land, if they are anybody's.
+        instructing: Instructing | None = None,
         on_workload: Keeps what was answered after a flight.
         clock: Monotonic seconds, the bus's clock.
     """
@@ -115,6 +117,7 @@ class FlightApp(Commanding):
         coach: LiveCoach | None = None,
         desk: Desk | None = None,
         keeper: Keeper | None = None,
+        instructing: Instructing | None = None,
         on_workload: Callable[[Workload], None] = lambda _: None,
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
@@ -137,6 +140,7 @@ class FlightApp(Commanding):
         self._on_workload = on_workload
         self.advice: Advice | None = None
         self.wish: Wish | None = None
+        self._instructing = instructing or Instructing(None)
         self._score: Score | None = None
         self._flight = FlightScreen(self.hand if stick is not None else None)
         self._milestones, self._viewer = Milestones(), Viewer()
@@ -176,6 +180,8 @@ class FlightApp(Commanding):
         for note in self._answers.take(snapshot):
             severity = "error" if note.severity is Severity.ALARM else "warning"
             self.notify(note.text, severity=severity, timeout=6.0, markup=False)
+        for refusal in self._instructing.refusals():
+            self.notify(refusal, severity="warning", timeout=6.0, markup=False)
         stale_s = self._flight_run.settings.safety.state_stale_s
         if snapshot.vehicle is not None and snapshot.vehicle.valid:
             east, north, up, _ = snapshot.vehicle.position
@@ -402,6 +408,7 @@ class FlightApp(Commanding):
         yield SystemCommand("Bell on/off (b)", "The bell rings for alarms.", self.action_mute)
         yield SystemCommand("Next theme (ctrl+t)", "Dark, light, high contrast.", self.action_next_theme)
         yield from self._flight.commands()
+        yield from self._instructing.commands()
         yield SystemCommand("Help (?)", "All keys.", self.action_help)
         yield SystemCommand("Quit (q)", "Asks first while the vehicle is in the air.", self.action_quit)
 

@@ -94,6 +94,11 @@ class Frame:
         """The snapshot's time, s."""
         return self.snapshot.t
 
+    @property
+    def guided(self) -> bool:
+        """The hand is guided to the mission's way."""
+        return self.run.guidance > 0.0
+
     def age(self, record: Record | None) -> float:
         """Return a record's age, s; infinite where there is none."""
         return math.inf if record is None else max(self.now - record.t, 0.0)

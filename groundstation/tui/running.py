@@ -11,6 +11,7 @@ from groundstation.console import Console
 from groundstation.messages import Severity
 from groundstation.progress.keeper import Keeper
 from groundstation.run import Run
+from groundstation.training.asking import Asker
 from groundstation.training.coach import LiveCoach
 from groundstation.training.follower import MissionFollower
 from groundstation.training.workload import Workload
@@ -18,6 +19,7 @@ from groundstation.tui.app import FlightApp
 from groundstation.tui.frame import Reader, Supervisor
 from groundstation.tui.hand import StickSender
 from groundstation.tui.hangup import HangupWatch
+from groundstation.tui.instructing import Instructing
 from groundstation.tui.wish import Ending
 
 _SWITCH_S = 0.001
@@ -33,6 +35,7 @@ def run_screen(
     coach: LiveCoach | None = None,
     keeper: Keeper | None = None,
     on_workload: Callable[[Workload], None] = lambda _: None,
+    instructing: Instructing | None = None,
 ) -> Ending:
     """Show the screen until the operator leaves; return how that was."""
     app = FlightApp(
@@ -43,6 +46,7 @@ def run_screen(
         follower=follower,
         coach=coach,
         keeper=keeper,
+        instructing=instructing,
         on_workload=on_workload,
     )
     # A collection that looks through all the modules again takes 0.2 s, and a stick is stale after 0.1 s.
@@ -84,6 +88,7 @@ def fly_on_screen(run: Run, bus: Bus, supervisor: Supervisor) -> Ending:
             coach=LiveCoach(run, lambda words: bus.event(Severity.INFO, words)),
             keeper=keeper,
             on_workload=on_workload,
+            instructing=Instructing(Asker(bus, "instructor") if run.simulated else None),
         )
     finally:
         for words in keeper.close() if keeper else ():

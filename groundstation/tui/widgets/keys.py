@@ -6,10 +6,10 @@ from collections.abc import Iterator
 
 from textual import events
 
-from groundstation.messages import CommandKind, MappingMode, PilotState, Preset
+from groundstation.messages import CommandKind, Cue, MappingMode, PilotState, Preset
 from groundstation.pilot.presets import PRESETS
 from groundstation.tui.acts import ACTS
-from groundstation.tui.choices import CHOICES, Choice, in_effect
+from groundstation.tui.choices import CHOICES, CUES, Choice, in_effect
 from groundstation.tui.cues import Part, parts
 from groundstation.tui.frame import Frame
 from groundstation.tui.pages import PAGES
@@ -93,8 +93,10 @@ def _act(key: str, label: str, *, possible: bool) -> Row:
 
 def _choices(frame: Frame, *, full: bool) -> Iterator[Item]:
     pilot = frame.pilot
-    cues = {part.name: part for part in parts(pilot)} if pilot else {}
+    cues = {part.name: part for part in parts(pilot, guided=frame.guided)} if pilot else {}
     for choice in CHOICES:
+        if choice is CUES[Cue.GUIDANCE] and not frame.guided:
+            continue
         words = choice.name if full or choice.kind is not CommandKind.CUES else choice.name[:_SHORT]
         if pilot is None:
             row: Row = [(f" {choice.key} {words}", Tone.FAINT)]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+from groundstation.training.guide import Guide, Way
 from groundstation.training.mission import Mission as MissionFile
 from groundstation.tui.directions import title, way_of, whereabouts
 from groundstation.tui.frame import Frame
@@ -50,13 +51,17 @@ def _next(frame: Frame, width: int) -> list[Row]:
         return []
     rows = [
         _row("next", (title(guide)[: max(width - _LABEL - 2, 0)], Tone.TARGET)),
-        _row("", (whereabouts(guide, way)[: max(width - _LABEL - 2, 0)], Tone.STRONG)),
+        _row("", (_where(guide, way)[: max(width - _LABEL - 2, 0)], Tone.STRONG)),
     ]
     if guide.held_s > 0.0 and guide.hold_s:
         head, figure = _row("stay"), f" {guide.held_s:.1f} of {guide.hold_s:g} s"
         room = width - width_of(head) - len(figure) - 1
         rows.append([*head, *gauge(guide.held_s, guide.hold_s, room, Tone.OK, Tone.OK), (figure, Tone.TEXT)])
     return rows
+
+
+def _where(guide: Guide, way: Way) -> str:
+    return f"{whereabouts(guide, way)}{f', then stay {guide.hold_s:g} s' if guide.hold_s else ''}"
 
 
 def _progress(frame: Frame, mission: MissionFile, width: int) -> list[Row]:

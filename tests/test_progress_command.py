@@ -67,6 +67,7 @@ def test_a_table_for_people(capsys, logs):
     code, out, err = said(capsys, "--pilot", "ann", "--logs", logs)
     assert (code, err) == (0, "")
     lines = out.splitlines()
+    assert lines[0].startswith("Ann: ")
     assert "2 of 23 missions passed, 7 min in 4 flights." in lines[0]
     assert lines[1].startswith("Next: ")
     (spring,) = [line for line in lines if line.split()[1:2] == ["spring"] and "▅" in line]
@@ -81,7 +82,7 @@ def test_an_object_for_programs(capsys, logs):
     found = json.loads(out)
     assert code == 0
     assert (found["pilot"], found["passed"], found["flights"], found["collisions"]) == (
-        "ann".title(),
+        "Ann",
         2,
         4,
         4,

@@ -19,6 +19,7 @@ BENCHES = {
     "paper": "the paper's mission, headless",
     "vehicle": "start, memory and share of a core of the simulated vehicle",
     "fuzz": "a million hostile datagrams at the vehicle",
+    "fuzz_station": "a million hostile inputs at pilot and gate",
     "falcon": "the Falcon's driver: exactness, spoilt bytes, cost of a tick",
     "servo": "pace of the servo on an emulated device, against a bare C loop",
     "passivity": "energy at the haptic port with delay and loss",
@@ -28,8 +29,11 @@ BENCHES = {
     "evaluate": "how many times as fast as real time flights are evaluated",
     "recording": "what recording costs: share of a core, MB a minute, rows lost",
     "killed": "what a recording misses after a process of the flight was killed",
+    "soak": "the whole program for half an hour with random faults: what dies, grows, falls behind",
+    "reconnect": "a thousand times connected and cut off: what memory and descriptors the link keeps",
     "report": "report on a flight of ten minutes, and loading it",
     "identify": "how exactly χ comes back out of noisy flights of every preset",
+    "school": "every mission flown by simulated operators: who passes, and in which order",
     "shield": "full-stick adversaries through obstacle fields, with and without the guard",
 }
 

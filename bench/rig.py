@@ -44,6 +44,8 @@ class Tap:
         setpoints: (time, payload) of every datagram with a setpoint, on its way to the vehicle.
         commands: (time, command) of every COMMAND_LONG on its way to the vehicle.
         heard: (time, datagram) of all that the vehicle said.
+        said: (time, datagram) of all that the program said.
+        passes: Says of a datagram whether it passes, either way; all do at first.
     """
 
     def __init__(self) -> None:
@@ -51,9 +53,11 @@ class Tap:
         self._vehicle = _bound()
         self._peers: dict[socket.socket, object] = {}
         self._running = True
+        self.passes: Callable[[bytes], bool] = lambda _: True
         self.setpoints: list[tuple[float, bytes]] = []
         self.commands: list[tuple[float, int]] = []
         self.heard: list[tuple[float, bytes]] = []
+        self.said: list[tuple[float, bytes]] = []
         self.program_port = int(self._program.getsockname()[1])
         self.vehicle_port = int(self._vehicle.getsockname()[1])
         self._thread = threading.Thread(target=self._relay, daemon=True)
@@ -62,6 +66,10 @@ class Tap:
     def inject(self, data: bytes) -> None:
         """Say something to the vehicle as if it came from the program's side."""
         self._vehicle.sendto(data, self._peers[self._vehicle])
+
+    def say(self, data: bytes) -> None:
+        """Say something to the program as if it came from the vehicle's side."""
+        self._program.sendto(data, self._peers[self._program])
 
     def close(self) -> None:
         """End the relay."""
@@ -79,6 +87,10 @@ class Tap:
                 self._peers[ready] = peer
                 if ready is self._vehicle:
                     self.heard.append((now, data))
+                else:
+                    self.said.append((now, data))
+                if not self.passes(data):
+                    continue
                 if ready is self._program and data[0] == 0xFD and data[7] == SETPOINT_ID:
                     self.setpoints.append((now, data[14 : 10 + data[1]].ljust(49, b"\0")))
                 if ready is self._program and data[0] == 0xFD and data[7:10] == _COMMAND_LONG:
@@ -95,22 +107,27 @@ def _bound() -> socket.socket:
 
 
 class Hand:
-    """Holds a software handle at a place, repeating itself at 100 Hz; `put` returns when it went out."""
+    """Holds a software handle at a place, repeating itself at 100 Hz; `put` returns when it went out.
+
+    Attributes:
+        silent: It does not repeat itself.
+    """
 
     def __init__(self, path: str) -> None:
         self._sender = StickSender(path)
         self._lock = threading.Lock()
-        self._place = (0.0, 0.0, 0.0)
+        self._place, self._buttons = (0.0, 0.0, 0.0), 0
+        self.silent = False
         self._running = True
         self._thread = threading.Thread(target=self._repeat, daemon=True)
         self._thread.start()
 
-    def put(self, place: tuple[float, float, float]) -> float:
-        """Move the handle and return the moment it was sent, monotonic s."""
+    def put(self, place: tuple[float, float, float], buttons: int = 0) -> float:
+        """Move the handle, press its buttons (one bit each), and return the moment it was sent, monotonic s."""
         with self._lock:
-            self._place = place
+            self._place, self._buttons = place, buttons
             now = time.monotonic()
-            self._sender.send(place, 0.0, 0, now)
+            self._sender.send(place, 0.0, buttons, now)
         return now
 
     def close(self) -> None:
@@ -122,7 +139,8 @@ class Hand:
     def _repeat(self) -> None:
         while self._running:
             with self._lock:
-                self._sender.send(self._place, 0.0, 0, time.monotonic())
+                if not self.silent:
+                    self._sender.send(self._place, 0.0, self._buttons, time.monotonic())
             time.sleep(0.01)
 
 
@@ -134,6 +152,7 @@ class Program:
         columns, rows: Size of the terminal.
         under: Command that starts it, as `setpriv` does with fewer rights.
         watch: Is given all that the program writes.
+        environment: Variables that it gets besides.
 
     Attributes:
         screen: The newest of what it wrote to the terminal.
@@ -148,6 +167,7 @@ class Program:
         rows: int = 60,
         under: tuple[str, ...] = (),
         watch: Callable[[bytes], None] = lambda _: None,
+        environment: dict[str, str] | None = None,
     ) -> None:
         self.started = time.monotonic()
         controller, terminal = pty.openpty()
@@ -155,7 +175,7 @@ class Program:
         self.process = subprocess.Popen(
             [*under, sys.executable, "-m", "groundstation.cli", *arguments],
             stdin=terminal, stdout=terminal, stderr=terminal, cwd=ROOT, start_new_session=True,
-            env=os.environ | {"TERM": "xterm-256color", "COLORTERM": "truecolor"},
+            env=os.environ | {"TERM": "xterm-256color", "COLORTERM": "truecolor"} | (environment or {}),
         )  # fmt: skip
         os.close(terminal)
         self._controller = controller

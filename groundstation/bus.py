@@ -39,6 +39,7 @@ class Publisher(Generic[R]):
 
     def __init__(self, port: Any, notifier: Any) -> None:
         self._send = port.send_copy
+        self._welcome = port.update_connections
         self._notify = notifier.notify if notifier else None
 
     def send(self, record: R) -> None:
@@ -46,6 +47,10 @@ class Publisher(Generic[R]):
         self._send(record)
         if self._notify:
             self._notify()
+
+    def welcome(self) -> None:
+        """Give who has come since the last record the topic's history; else they wait for the next record."""
+        self._welcome()
 
 
 class Subscriber(Generic[R]):
@@ -80,8 +85,13 @@ class Waker:
         self._wait = listener.timed_wait
 
     def wait(self, seconds: float) -> None:
-        """Return when a record was sent since the last call, or after `seconds`."""
-        self._wait(iox2.Duration.from_secs_f64(seconds))
+        """Return when a record was sent since the last call, after `seconds`, or when a signal came."""
+        try:
+            self._wait(iox2.Duration.from_secs_f64(seconds))
+        except iox2.ListenerWaitError as error:
+            # A process that is told to end must get to its end, which is what it waits for no longer.
+            if "InterruptSignal" not in str(error):
+                raise
 
 
 class Bus:

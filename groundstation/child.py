@@ -10,12 +10,14 @@ from collections.abc import Callable
 from pathlib import Path
 
 from groundstation.bus import Bus
+from groundstation.failsafe import BY_FAULT, Fault
 from groundstation.messages import Severity
 from groundstation.run import Run, read_run
 from groundstation.run_folder import Stay, sweep
 from groundstation.terminal import give_back
 
 HEARTBEAT_S = 0.1
+_SCREEN_DEAD = BY_FAULT[Fault.SCREEN_DEAD]
 
 
 class Lifeline:
@@ -40,7 +42,8 @@ class Lifeline:
         now = self._clock()
         if now >= self._next_beat:
             self._next_beat = now + HEARTBEAT_S
-            if os.getppid() != self._parent:
+            if os.getppid() != self._parent and not self._ended:
+                self._bus.event(_SCREEN_DEAD.severity, _SCREEN_DEAD.words)
                 self._ended = True
             self._bus.heartbeat()
         return not self._ended

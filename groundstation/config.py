@@ -69,6 +69,9 @@ class Buttons(Struct, frozen=True, forbid_unknown_fields=True):
         turn_left, turn_right: Turn at the full yaw rate while held, for a handle without rotation.
         release: Uncouples the hand: the vehicle holds.
         hold, land, return_home: Command that, as the keys do.
+        enable: Enabling switch: the hand is coupled only while it is held. One with three positions is let go in its
+            first, held in its middle, and let go again when it is squeezed through.
+        panic: The contact of such a switch that closes when it is squeezed through: uncouples the hand.
     """
 
     clutch: Button = 0
@@ -80,6 +83,17 @@ class Buttons(Struct, frozen=True, forbid_unknown_fields=True):
     hold: Button = -1
     land: Button = -1
     return_home: Button = -1
+    enable: Button = -1
+    panic: Button = -1
+
+    def __post_init__(self) -> None:
+        for name in ("enable", "panic"):
+            number = getattr(self, name)
+            for other in self.__struct_fields__:
+                if number >= 0 and other != name and getattr(self, other) == number:
+                    raise ValueError(
+                        f"{name} and {other} are both button {number}; give {name} one of its own"
+                    )
 
 
 class Control(Struct, frozen=True, forbid_unknown_fields=True):
@@ -152,6 +166,12 @@ class Shield(Struct, frozen=True, forbid_unknown_fields=True):
     floor: Annotated[float, Meta(ge=0, le=100)] = 0.5
     ceiling: Annotated[float, Meta(ge=0, le=1_000)] = 0.0
     fence: Annotated[float, Meta(ge=0, le=100_000)] = 0.0
+
+    def __post_init__(self) -> None:
+        if 0.0 < self.ceiling <= self.floor:
+            raise ValueError(
+                f"the ceiling, {self.ceiling}, is not above the floor, {self.floor}; raise one or lower the other"
+            )
 
 
 class Link(Struct, frozen=True, forbid_unknown_fields=True):
@@ -233,7 +253,7 @@ class Safety(Struct, frozen=True, forbid_unknown_fields=True):
     force_stale_s: Annotated[float, Meta(gt=0, le=0.5)] = 0.1
     handle_stale_s: Annotated[float, Meta(gt=0, le=0.15)] = 0.1
     setpoint_stale_s: Annotated[float, Meta(gt=0, le=0.15)] = 0.15
-    link_warning_s: Annotated[float, Meta(gt=0, le=5.0)] = 0.5
+    link_warning_s: Annotated[float, Meta(gt=0, le=5.0)] = 0.4
 
 
 class Rates(Struct, frozen=True, forbid_unknown_fields=True):

@@ -81,12 +81,15 @@ class Console:
         bus: This process's place on the bus.
         source: Who gives the commands, as in "screen" or "headless".
         clock: Monotonic seconds.
+        first: Number of the first command; a second console of a run begins elsewhere.
     """
 
-    def __init__(self, bus: Bus, source: str, clock: Callable[[], float] = time.monotonic) -> None:
+    def __init__(
+        self, bus: Bus, source: str, clock: Callable[[], float] = time.monotonic, first: int = 1
+    ) -> None:
         self._clock = clock
         self._source = source.encode()
-        self._numbers = itertools.count(1)
+        self._numbers = itertools.count(first)
         self._commands = bus.publisher(COMMAND)
         self._handle = bus.subscriber(HANDLE, depth=1)
         self._setpoint = bus.subscriber(SETPOINT, depth=1)

@@ -5,9 +5,9 @@ from __future__ import annotations
 import argparse
 import contextlib
 import datetime
-import getpass
 import os
 import signal
+import sys
 from collections.abc import Generator
 from pathlib import Path
 from typing import NoReturn
@@ -18,11 +18,16 @@ from groundstation.bus import Bus
 from groundstation.config import Settings, check_flown_by_rate, load_settings, usual_file
 from groundstation.connecting import note
 from groundstation.errors import InputError
+from groundstation.login import login_name
 from groundstation.processes import Supervisor, free_port, running
 from groundstation.run import Run
 from groundstation.run_folder import new_run_id, run_folder, sweep_dead_runs
 from groundstation.terminal import has_screen, terminal_path
 from groundstation.training.mission import Mission, find_mission, load_mission
+from groundstation.training.par import par_in
+from groundstation.training.reference import load_reference
+from groundstation.tui.wish import Ending
+from groundstation.vehicle.signing import read_key
 from groundstation.vehicle.transport import parse_url
 from sim.scenario import VehicleChoice
 
@@ -36,21 +41,35 @@ def fly(asked: argparse.Namespace) -> int:
     Raises:
         InputError: Something asked for cannot be.
     """
-    _check(asked)
-    run = accompanied(plan(asked), asked)
-    note(asked)
-    with started(run, asked) as (bus, supervisor):
-        if asked.headless:
-            from groundstation.headless import fly_headless
+    while True:
+        _check(asked)
+        run = accompanied(plan(asked), asked)
+        note(asked)
+        with started(run, asked) as (bus, supervisor):
+            ending = _flown(run, asked, bus, supervisor)
+            if ending.wish is not None:
+                sys.stderr.write(f"{run.recording.name}: being closed; then {ending.wish.mission} begins.\n")
+        if ending.wish is None:
+            return ending.code
+        asked.mission, asked.pilot = ending.wish
 
-            return fly_headless(run, bus, supervisor, as_json=asked.json, seed=asked.seed)
-        if asked.plain:
-            from groundstation.tui.plain import fly_plainly
 
-            return fly_plainly(run, bus, supervisor)
-        from groundstation.tui.running import fly_on_screen
+def _flown(run: Run, asked: argparse.Namespace, bus: Bus, supervisor: Supervisor) -> Ending:
+    """Fly a run whose processes run, in the way that was asked for."""
+    if asked.headless:
+        from groundstation.headless import fly_headless
 
-        return fly_on_screen(run, bus, supervisor)
+        operator = asked.operator or "average"
+        return Ending(
+            fly_headless(run, bus, supervisor, as_json=asked.json, operator=operator, seed=asked.seed)
+        )
+    if asked.plain:
+        from groundstation.tui.plain import fly_plainly
+
+        return Ending(fly_plainly(run, bus, supervisor))
+    from groundstation.tui.running import fly_on_screen
+
+    return fly_on_screen(run, bus, supervisor)
 
 
 @contextlib.contextmanager
@@ -84,9 +103,12 @@ def plan(asked: argparse.Namespace) -> Run:
     _check_controller(asked.controller, settings)
     url = asked.connect or f"udpin://127.0.0.1:{free_port()}"
     parse_url(url)
+    if asked.signing_key:
+        read_key(asked.signing_key)
     now = datetime.datetime.now().astimezone()
     run_id = new_run_id()
     device = _device(asked, run_id)
+    par, par_from = par_in(load_reference(mission, path) if mission and path else None, asked.seed)
     if asked.device:
         _check_device(device, settings)
     return Run(
@@ -100,13 +122,16 @@ def plan(asked: argparse.Namespace) -> Run:
         log=str(log_stem(asked.logs, now, mission.name if mission else "flight")),
         viewer_url=_viewer(asked),
         controller=asked.controller,
-        pilot=_pilot(asked.pilot),
+        pilot=_pilot(asked),
         seed=asked.seed,
         terminal="" if asked.headless or asked.plain else terminal_path(),
         started=now.isoformat(timespec="milliseconds"),
         config=str((asked.config or usual_file() or Path()).resolve())
         if asked.config or usual_file()
         else "",
+        signing_key=str(asked.signing_key.resolve()) if asked.signing_key else "",
+        par=par,
+        par_from=par_from,
     )
 
 
@@ -141,6 +166,8 @@ def _check(asked: argparse.Namespace) -> None:
         raise InputError(
             "--headless flies with the scripted hand; leave --device out, or give it a double: emulated:falcon."
         )
+    if asked.operator and not asked.headless:
+        raise InputError("--operator says who flies a --headless flight; add --headless.")
     if asked.json and not asked.headless:
         raise InputError("--json is the summary of a --headless flight; add --headless.")
     if asked.headless and asked.connect and not asked.confirm_real:
@@ -238,6 +265,8 @@ def _sim_options(asked: argparse.Namespace) -> tuple[str, ...]:
         options += ["--model", asked.model]
     if asked.channel:
         options += ["--channel", asked.channel]
+    if asked.signing_key:
+        options += ["--signing-key", str(asked.signing_key)]
     return tuple(options)
 
 
@@ -251,14 +280,11 @@ def _device(asked: argparse.Namespace, run_id: str) -> str:
     return asked.device
 
 
-def _pilot(named: str | None) -> str:
-    """Return who flies: as named, else who is logged in, where the system knows."""
-    if named is not None:
-        return named.strip()
-    try:
-        return getpass.getuser()
-    except (KeyError, OSError):
-        return ""
+def _pilot(asked: argparse.Namespace) -> str:
+    """Return who flies: as named, else who is logged in; the scripted hand is nobody unless it is given a name."""
+    if asked.pilot is not None:
+        return asked.pilot.strip()
+    return "" if asked.headless else login_name()
 
 
 def log_stem(folder: Path, now: datetime.datetime, name: str) -> Path:

@@ -16,12 +16,19 @@ def fill(parser: argparse.ArgumentParser) -> None:
 
 def add_vehicle(parser: argparse.ArgumentParser) -> None:
     """Add which vehicle is flown."""
-    vehicle = parser.add_argument_group("vehicle (one of)").add_mutually_exclusive_group()
+    group = parser.add_argument_group("vehicle (--sim or --connect)")
+    vehicle = group.add_mutually_exclusive_group()
     vehicle.add_argument("--sim", action="store_true", help="start and fly a simulated vehicle")
     vehicle.add_argument(
         "--connect",
         metavar="URL",
         help="fly the vehicle at udpin://HOST:PORT, udpout://HOST:PORT, tcpout://HOST:PORT or serial://PORT:BAUD",
+    )
+    group.add_argument(
+        "--signing-key",
+        type=Path,
+        metavar="FILE",
+        help="sign, and hear only who signs (MAVLink 2): 32 bytes, or a passphrase, readable by you alone",
     )
 
 
@@ -54,6 +61,11 @@ def add_flight(parser: argparse.ArgumentParser) -> None:
     )
     flight.add_argument(
         "--headless", action="store_true", help="no screen: the scripted hand flies the mission"
+    )
+    flight.add_argument(
+        "--operator",
+        choices=("novice", "average", "expert"),
+        help="with --headless: who flies, see docs/operators.md (default: average)",
     )
     flight.add_argument(
         "--plain",
@@ -93,7 +105,9 @@ def add_recording(parser: argparse.ArgumentParser) -> None:
     """Add settings, and where the recording goes."""
     general = parser.add_argument_group("settings and recording")
     general.add_argument("--config", type=Path, metavar="FILE", help="settings (default: groundstation.toml)")
-    general.add_argument("--pilot", metavar="NAME", help="who flies (default: who is logged in)")
+    general.add_argument(
+        "--pilot", metavar="NAME", help="who flies (default: who is logged in; --headless: nobody)"
+    )
     general.add_argument("--logs", type=Path, default=Path("logs"), metavar="DIR", help="recordings go here")
     live = general.add_mutually_exclusive_group()
     live.add_argument("--rerun", action="store_true", help="show the flight live in the Rerun viewer")

@@ -25,6 +25,8 @@ REASON_TEXT = 160
 NAME_TEXT = 49
 FIRMWARE_TEXT = 24
 PARAMETER_TEXT = 17
+PART_TEXT = 16
+HAPPENING_TEXT = 200
 # Sectors of the ring in `Ranges`, as many as MAVLink's OBSTACLE_DISTANCE has room for.
 RING_SECTORS = 72
 
@@ -540,6 +542,48 @@ class CommandAnswer(Record):
     )
 
 
+class Intervention(Record):
+    """An instructor, or a mission's timetable, wants something to happen to the flight.
+
+    Attributes:
+        number: Distinguishes it from all others of the run; its `InterventionAnswer` has the same.
+        source: Who wants it, as in "instructor" or "mission".
+        happening: What, as `groundstation.training.happening.packed` gives it.
+    """
+
+    number: int
+    source: bytes
+    happening: bytes
+    _fields_ = (
+        ("t", _F64),
+        ("number", _U64),
+        ("source", ctypes.c_char * 16),
+        ("happening", ctypes.c_char * HAPPENING_TEXT),
+    )
+
+
+class InterventionAnswer(Record):
+    """What became of an `Intervention`, which it repeats: who comes late gets to know what has been done.
+
+    Attributes:
+        ok: It was done; else `text` says why not.
+    """
+
+    number: int
+    ok: int
+    source: bytes
+    happening: bytes
+    text: bytes
+    _fields_ = (
+        ("t", _F64),
+        ("number", _U64),
+        ("ok", _U8),
+        ("source", ctypes.c_char * 16),
+        ("happening", ctypes.c_char * HAPPENING_TEXT),
+        ("text", ctypes.c_char * ANSWER_TEXT),
+    )
+
+
 class Event(Record):
     """Something that happened, in words."""
 
@@ -643,6 +687,32 @@ class MissionProgress(Record):
     )
 
 
+class PointsLost(Record):
+    """A moment in which a flight lost points, told when it has landed (`t` is that of the moment).
+
+    Attributes:
+        until: When it ended, s.
+        points: Of the score's 100.
+        position: Where the vehicle was, world, m.
+        part: Of the score.
+        text: What happened.
+    """
+
+    until: float
+    points: float
+    position: ctypes.Array[_F64]
+    part: bytes
+    text: bytes
+    _fields_ = (
+        ("t", _F64),
+        ("until", _F64),
+        ("points", _F64),
+        ("position", _F64 * 3),
+        ("part", ctypes.c_char * PART_TEXT),
+        ("text", ctypes.c_char * EVENT_TEXT),
+    )
+
+
 class Heartbeat(Record):
     """A process is alive and its loop turns, 10 Hz."""
 
@@ -685,10 +755,13 @@ PARAMETER = Topic("parameter", Parameter, depth=4096, history=0)
 OBSTACLES = Topic("obstacles", Ranges, history=32)
 COMMAND = Topic("command", Command, history=0)
 COMMAND_ANSWER = Topic("command_answer", CommandAnswer, history=0)
+INTERVENTION = Topic("intervention", Intervention, history=0)
+INTERVENTION_ANSWER = Topic("intervention_answer", InterventionAnswer, depth=128, history=64)
 EVENT = Topic("event", Event, depth=256, history=32)
 SERVO_REPORT = Topic("servo_report", ServoReport)
 DEVICE_REPORT = Topic("device_report", DeviceReport, history=16)
 MISSION_PROGRESS = Topic("mission_progress", MissionProgress)
+POINTS_LOST = Topic("points_lost", PointsLost, history=0)
 HEARTBEAT = Topic("heartbeat", Heartbeat, history=0)
 
 

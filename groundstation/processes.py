@@ -19,6 +19,8 @@ from enum import StrEnum
 from pathlib import Path
 
 from groundstation.bus import Bus
+from groundstation.conditions import Conditions
+from groundstation.failsafe import BY_FAULT, Action, Fault, Who, first, rows
 from groundstation.messages import COMMAND, HEARTBEAT, Command, CommandKind, Severity
 from groundstation.run import Run, write_run
 from groundstation.run_folder import Stay, run_folder, sweep
@@ -27,6 +29,8 @@ SILENT_S = 1.0
 _STARTING_S = 15.0
 _END_S = {"recorder": 20.0}
 _END_USUAL_S = 3.0
+_DEATHS = rows(Who.SUPERVISOR, Action.RELEASE)
+_STALLED = BY_FAULT[Fault.PROCESS_STALLED]
 
 
 class State(StrEnum):
@@ -116,12 +120,14 @@ class Supervisor:
         now = self._clock()
         beats = {beat.role.decode(): beat.t for beat in self._heartbeats.drain()}
         deaths: list[str] = []
+        ended: set[str] = set()
         for watched in self._watched:
             if sentence := self._look(watched, beats, now):
                 self._bus.event(Severity.ALARM, sentence)
                 if watched.state is State.ENDED:
                     deaths.append(sentence)
-        if deaths:
+                    ended.add(watched.process.role)
+        if first(_DEATHS, Conditions(ended=frozenset(ended)), self._run.settings.safety):
             self._commands.send(Command(t=now, kind=int(CommandKind.DISENGAGE), source=b"supervisor"))
         return deaths
 
@@ -173,7 +179,7 @@ class Supervisor:
             watched.state is State.STARTING and now - watched.started > _STARTING_S
         ):
             watched.state = State.SILENT
-            return f"The {role} process does not answer."
+            return f"The {role} process {_STALLED.words}."
         return ""
 
 

@@ -13,6 +13,7 @@ import secrets
 import shutil
 import tempfile
 import time
+from collections.abc import Iterator
 from pathlib import Path
 from typing import IO
 
@@ -66,10 +67,21 @@ def sweep_dead_runs() -> None:
 
     Other folders that begin alike are somebody's, such as a comparison that is being looked at.
     """
+    for run_id, folder in _folders():
+        if _is_dead(folder):
+            sweep(run_id)
+
+
+def living_runs() -> list[str]:
+    """Return the runs in which somebody is."""
+    return [run_id for run_id, folder in _folders() if folder.is_dir() and not _is_dead(folder)]
+
+
+def _folders() -> Iterator[tuple[str, Path]]:
     for folder in Path(tempfile.gettempdir()).glob(f"{PREFIX}*-*"):
         run_id = folder.name.removeprefix(PREFIX)
-        if _RUN_ID.fullmatch(run_id) and _is_dead(folder):
-            sweep(run_id)
+        if _RUN_ID.fullmatch(run_id):
+            yield run_id, folder
 
 
 def _is_dead(folder: Path) -> bool:

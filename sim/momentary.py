@@ -40,7 +40,7 @@ class Momentary:
         self._parameters, self._battery = parameters, battery
         self._gust, self._lose_gps = gust, lose_gps
         self._seen = parameters.changed
-        self._taken = dict.fromkeys(MOMENTARY, 0.0)
+        self._taken: dict[str, float] = dict.fromkeys(MOMENTARY, 0.0)
         self._ends: dict[str, float] = {}
 
     def step(self, t: float) -> None:

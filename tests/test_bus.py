@@ -154,3 +154,16 @@ def test_a_setpoint_nobody_waits_for_is_sent_all_the_same(bus):
     for number in range(2000):
         publisher.send(Setpoint(number=number))
     assert [setpoint.number for setpoint in subscriber.drain()][-1] == 1999
+
+
+def test_a_signal_ends_the_wait_and_not_the_process(bus):
+    import signal
+
+    came = []
+    before = signal.signal(signal.SIGALRM, lambda *_: came.append(True))
+    signal.setitimer(signal.ITIMER_REAL, 0.05)
+    try:
+        bus.waker(SETPOINT).wait(20.0)
+    finally:
+        signal.signal(signal.SIGALRM, before)
+    assert came == [True]

@@ -9,7 +9,7 @@ import time
 from pathlib import Path
 
 import pytest
-from test_flight import LONG, descendants, headless, holds, speed, until
+from flight_support import LONG, descendants, headless, holds, speed, until
 
 from bench.rig import Hand, Program, Tap, vehicle
 from groundstation.messages import CommandKind, Phase

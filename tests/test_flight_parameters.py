@@ -4,8 +4,8 @@ import pytest
 
 from bench.rig import Program
 from groundstation.messages import CommandKind, Phase
-from groundstation.vehicle.px4 import JUDGED
 from groundstation.vehicle.parameters import cannot_be_set
+from groundstation.vehicle.px4 import JUDGED
 from sim.autopilot.parameters import NAMES
 
 

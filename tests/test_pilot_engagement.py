@@ -45,6 +45,8 @@ HAND_FAULTS = [
     ({"present": False}, "no haptic device"),
     ({"homed": False}, "not homed"),
     ({"believable": False}, "number"),
+    ({"enabled": False}, "enable control is not held"),
+    ({"squeezed": True}, "squeezed through"),
     ({"handle_age": 0.11}, "0.11 s old"),
     ({"handle_age": nan}, "old"),
     ({"gap": 0.151}, "servo stood still"),
@@ -58,6 +60,8 @@ VEHICLE_FAULTS = [
     ({"state_valid": False}, "trust"),
     ({"armed": False}, "not armed"),
     ({"in_air": False}, "on the ground"),
+    ({"speed": 5.6, "speed_limit": 3.0}, "5.6 m/s"),
+    ({"climb": 3.3, "climb_limit": 1.5}, "far over its limit"),
 ]
 
 
@@ -98,7 +102,7 @@ def test_a_fault_of_the_hand_ends_it_and_cuts_the_force(
     assert ending is not None
     assert words in ending.words
     assert ending.cut
-    assert ending.severity is Severity.ALARM
+    assert ending.severity is (Severity.WARNING if "enable control is not" in words else Severity.ALARM)
 
 
 @pytest.mark.parametrize(("change", "words"), [*VEHICLE_FAULTS, ({"boots": 1}, "rebooted")])

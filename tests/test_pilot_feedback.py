@@ -86,9 +86,7 @@ def test_in_the_heading_frame_the_force_is_turned_to_the_hand_but_not_the_dampin
     assert hand_force(parts, pi / 2, 10.0) == pytest.approx((-3.0, 0.5, 1.0))
 
 
-@given(
-    st.builds(CueForces, *[vectors] * 6), st.floats(-7, 7), st.floats(0.01, 20)
-)
+@given(st.builds(CueForces, *[vectors] * 6), st.floats(-7, 7), st.floats(0.01, 20))
 def test_no_force_is_stronger_than_the_device_and_a_clipped_one_keeps_its_direction(
     parts: CueForces, turn: float, limit: float
 ) -> None:

@@ -165,8 +165,8 @@ async def test_preflight_says_of_every_check_how_it_is():
         shown = lines(scene)
         assert "✓ may be flown   ▲ 3 to know of" in shown
         for words in (
-            "haptic device", "handle", "servo", "link", "round trip, loss", "vehicle", "health", "since boot", "position",
-            "home", "battery", "fence", "speed limits", "mission",
+            "haptic device", "handle", "servo", "link", "round trip, loss", "vehicle", "health", "since boot",
+            "position", "home", "battery", "fence", "speed limits", "mission",
             "recording", *(each.name for each in JUDGED),
         ):  # fmt: skip
             assert words in shown
@@ -220,7 +220,7 @@ async def test_what_is_wrong_is_red_with_what_to_do(spoil, state, remedy):
         (lambda s: setattr(s.status, "rtt", math.nan), "not measured yet", "TIMESYNC"),
         (
             lambda s: setattr(s.status, "speed_limits", (2.0, 3.0, 0.7)),
-            "2 m/s around, 0.7 up and down",
+            "2 m/s around, 0.7 up, down",
             "kept",
         ),
     ],
@@ -240,7 +240,7 @@ async def test_an_autopilot_that_is_not_known_is_red():
         scene.reader.shown.status.autopilot = 0
         await scene.press("f7")
         await scene.see()
-        assert "■ vehicle              system 1, component 1, unknown autopilot" in lines(scene)
+        assert "■ vehicle                 system 1, component 1, unknown autopilot" in lines(scene)
 
 
 async def test_a_recording_that_cannot_be_written_is_red_and_a_full_disk_is_cautioned_about(
@@ -259,7 +259,7 @@ async def test_a_recording_that_cannot_be_written_is_red_and_a_full_disk_is_caut
         assert "0.5 GB free: 25 min of flight" in lines(scene)
         Disk.free = 0.2e9
         await scene.see()
-        assert "■ recording            0.2 GB free: 10 min" in lines(scene)
+        assert "■ recording               0.2 GB free: 10 min" in lines(scene)
 
 
 class Disk:
@@ -282,7 +282,7 @@ async def test_preflight_maps_the_devices_buttons_and_shows_those_that_are_held(
         await scene.see()
         shown = [line.split("◀") for line in lines(scene).splitlines()]
         assert [line[0].split()[0] for line in shown if len(line) == 2] == ["0", "5"]
-        assert "without a button: hold, land, return home" in lines(scene)
+        assert "without a button: enable, panic, hold, land, return home" in lines(scene)
 
 
 async def test_preflight_comes_by_itself_where_something_is_red_and_only_once():

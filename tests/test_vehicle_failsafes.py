@@ -1,6 +1,7 @@
 """The vehicle's parameters judged: what is dangerous or unread keeps the hand from being coupled."""
 
 import math
+from pathlib import Path
 
 import pytest
 from hypothesis import given
@@ -168,3 +169,9 @@ def test_another_autopilot_is_not_flown() -> None:
 @pytest.mark.parametrize("profile", PROFILES.values(), ids=lambda each: each.name)
 def test_what_bounds_the_speed_is_among_what_is_judged(profile) -> None:
     assert set(profile.speeds) <= {each.name for each in profile.judged}
+
+
+@pytest.mark.parametrize("profile", PROFILES.values(), ids=lambda each: each.name)
+def test_the_documentation_names_every_parameter_that_is_judged(profile) -> None:
+    text = (Path(__file__).resolve().parents[1] / "docs" / "operating.md").read_text(encoding="utf-8")
+    assert [each.name for each in profile.judged if f"`{each.name}`" not in text] == []

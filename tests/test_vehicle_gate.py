@@ -131,3 +131,18 @@ def test_frames_are_cut_where_they_end():
     first, second = link.heartbeat_encode(6, 8, 0, 0, 4).pack(link), setpoint()
     assert split_frames(bytes(first) + bytes(second)) == [bytes(first), bytes(second)]
     assert [message_number(frame) for frame in split_frames(bytes(first) + bytes(second))] == [0, 84]
+
+
+def test_a_frame_with_something_behind_it_is_none():
+    beat = bytes(packer().heartbeat_encode(6, 8, 0, 0, 4).pack(packer()))
+    gate = Gate(0.15, lambda: 5.0)
+    assert gate.passes(beat)
+    assert not gate.passes(beat + setpoint())
+    assert not gate.passes(beat[:-1])
+
+
+@given(st.binary(max_size=200))
+def test_what_is_cut_is_all_there_was(data):
+    pieces = b"".join(split_frames(data))
+    assert data.startswith(pieces)
+    assert len(data) - len(pieces) < 8

@@ -4,6 +4,7 @@ import math
 
 import pytest
 
+from groundstation.config import Safety
 from groundstation.messages import FlightMode, Stream
 from groundstation.vehicle.offboard import Act, OffboardStream, Seen
 
@@ -14,7 +15,7 @@ def seen(now=10.0, active=True, age=0.01, mode=FlightMode.HOLD, mode_t=0.0):
 
 @pytest.fixture
 def stream():
-    return OffboardStream(0.15)
+    return OffboardStream(Safety())
 
 
 @pytest.fixture

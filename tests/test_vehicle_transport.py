@@ -8,8 +8,18 @@ import time
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from serial.tools.list_ports_common import ListPortInfo
 
-from groundstation.vehicle.transport import TransportError, Url, UrlError, open_transport, parse_url
+from groundstation.messages import Severity
+from groundstation.vehicle import usb_port
+from groundstation.vehicle.transport import (
+    SerialPort,
+    TransportError,
+    Url,
+    UrlError,
+    open_transport,
+    parse_url,
+)
 
 
 def received(transport, within_s=5.0) -> bytes:
@@ -109,7 +119,11 @@ def test_udpout_speaks_first_and_survives_a_closed_port():
 def test_tcpout_reconnects():
     server = socket.create_server(("127.0.0.1", 0))
     server.settimeout(5)
-    transport = open_transport(Url("tcpout", "127.0.0.1", server.getsockname()[1]))
+    told = []
+    transport = open_transport(
+        Url("tcpout", "127.0.0.1", server.getsockname()[1]),
+        lambda severity, words: told.append((severity, words)),
+    )
     try:
         connection, _ = server.accept()
         transport.send(b"hello")
@@ -121,6 +135,10 @@ def test_tcpout_reconnects():
         connection.sendall(b"back")
         assert received(transport) == b"back"
         connection.close()
+        (alarm, lost), (info, back) = told
+        assert (alarm, info) == (Severity.ALARM, Severity.INFO)
+        assert "has hung up" in lost
+        assert "answers again" in back
     finally:
         transport.close()
         server.close()
@@ -158,3 +176,67 @@ def test_serial_over_a_pty_there_back_and_unplugged():
 def test_a_serial_port_that_is_not_there_is_told():
     with pytest.raises(TransportError, match="dialout"):
         open_transport(Url("serial", "/dev/ttyNOSUCH9", 57600))
+
+
+def usb(device, serial="A1", vendor=0x0403, product=0x6015) -> ListPortInfo:
+    """Return a USB serial port as pyserial lists it."""
+    port = ListPortInfo(device, skip_link_detection=True)
+    port.vid, port.pid, port.serial_number = vendor, product, serial
+    return port
+
+
+RADIO = usb_port.Identity(0x0403, 0x6015, "A1")
+
+
+@pytest.mark.parametrize(
+    ("ports", "found"),
+    [
+        ([], ""),
+        ([usb("/dev/ttyUSB0")], "/dev/ttyUSB0"),
+        ([usb("/dev/ttyUSB1")], "/dev/ttyUSB1"),
+        ([usb("/dev/ttyUSB0", serial="B2")], ""),  # a stranger at its place
+        ([usb("/dev/ttyUSB0", serial="B2"), usb("/dev/ttyUSB1")], "/dev/ttyUSB1"),  # they have swapped
+        ([usb("/dev/ttyUSB1"), usb("/dev/ttyUSB2")], ""),  # two that call themselves alike
+        ([usb("/dev/ttyUSB0"), usb("/dev/ttyUSB2")], "/dev/ttyUSB0"),
+        ([ListPortInfo("/dev/ttyUSB0", skip_link_detection=True)], ""),
+    ],
+)
+def test_a_port_is_where_its_device_is(ports, found):
+    assert usb_port.find("/dev/ttyUSB0", RADIO, ports) == found
+    assert usb_port.find("/dev/ttyUSB0", None, ports) == "/dev/ttyUSB0"
+
+
+def test_a_port_by_another_name_is_the_same_port(tmp_path):
+    by_id = tmp_path / "usb-radio"
+    by_id.symlink_to("/dev/ttyUSB0")
+    assert usb_port.identity(str(by_id), [usb("/dev/ttyUSB0")]) == RADIO
+    assert usb_port.find(str(by_id), RADIO, [usb("/dev/ttyUSB0")]) == str(by_id)
+    assert usb_port.identity("/dev/ttyS0", [ListPortInfo("/dev/ttyS0", skip_link_detection=True)]) is None
+
+
+def test_a_radio_that_comes_back_under_another_number_is_found_and_a_stranger_at_its_place_is_not_spoken_to():
+    first, second, stranger = pty.openpty(), pty.openpty(), pty.openpty()
+    names = [os.ttyname(end[1]) for end in (first, second, stranger)]
+    there = [usb(names[0])]
+    told = []
+    transport = SerialPort(Url("serial", names[0], 57600), lambda _, words: told.append(words), lambda: there)
+    try:
+        there[:] = [usb(names[2], serial="B2")]
+        for end in first:
+            os.close(end)
+        received(transport, within_s=1.5)
+        assert told == [f"Serial port {names[0]} is gone; plug it in again."]
+        there.append(usb(names[1]))
+        received(transport, within_s=2.5)
+        os.write(second[0], b"hello")
+        assert received(transport)
+        assert told[1:] == [f"Serial port {names[0]} is back, as {names[1]}."]
+        transport.send(b"answer")
+        assert os.read(second[0], 100).endswith(b"answer")
+        os.set_blocking(stranger[0], False)
+        with pytest.raises(BlockingIOError):
+            os.read(stranger[0], 100)
+    finally:
+        transport.close()
+        for end in (*second, *stranger):
+            os.close(end)

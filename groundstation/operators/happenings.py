@@ -27,17 +27,18 @@ class Happenings:
 
     def __init__(self, flight: VirtualFlight) -> None:
         self._flight = flight
-        self._device_back_t = self._gps_back_t = -math.inf
+        self._device_back_t = -math.inf
 
     def begin(self, event: Event) -> None:
         """Let something happen now."""
         flight, t = self._flight, self._flight.local.t
         vehicle, link = flight.vehicle, flight.link
+        told = vehicle.autopilot.parameters.set
         match event:
             case WindChange(velocity=wind, turbulence=turbulence):
                 names = ("SIM_WIND_E", "SIM_WIND_N", "SIM_WIND_U", "SIM_WIND_TURB")
                 for name, value in zip(names, (*wind, turbulence), strict=True):
-                    vehicle.autopilot.parameters.set(name, value)
+                    told(name, value)
             case GustNow(velocity=peak, duration_s=seconds):
                 vehicle.gust(peak, seconds)
             case Delay(round_trip_s=seconds, jitter_s=jitter):
@@ -53,16 +54,13 @@ class Happenings:
             case BatteryLeft(remaining=share):
                 vehicle.battery.remaining = share
             case GpsLoss(duration_s=seconds):
-                self._gps_back_t = t + seconds
-                vehicle.inject("gps", failed=True)
+                told("SIM_GPS_LOST", seconds)
 
     def go_on(self) -> None:
         """End what lasts no longer; to be called as the flight goes on."""
-        t, coupling, vehicle = self._flight.local.t, self._flight.local.coupling, self._flight.vehicle
-        if not coupling.present and t >= self._device_back_t:
-            coupling.present = True
-        if "gps" in vehicle.failed and t >= self._gps_back_t:
-            vehicle.inject("gps", failed=False)
+        local = self._flight.local
+        if not local.coupling.present and local.t >= self._device_back_t:
+            local.coupling.present = True
 
     def _change(self, **fields: float) -> None:
         """Go on with another channel, both ways, as far as it is named."""

@@ -14,9 +14,10 @@ from groundstation.evaluation.progress import Progress
 from groundstation.evaluation.trial import scenario_of
 from groundstation.evaluation.work import WorkError, fly_here, processes
 from groundstation.operators.exercise import NOBODY, Exercise, Flown, fly
-from groundstation.operators.table import Standing, table
+from groundstation.operators.standing import Standing, standing_of
+from groundstation.operators.table import table
 from groundstation.training.mission import MISSIONS_FOLDER, SUFFIX, Mission, find_mission, load_mission
-from groundstation.training.reference import EXPERT, Reference, digest_of, save_reference
+from groundstation.training.reference import save_reference
 from sim.people import PEOPLE
 from sim.scenario import ScenarioError
 from sim.simulator import build
@@ -33,9 +34,9 @@ class Asked(NamedTuple):
 
 
 class Flight(NamedTuple):
-    """An exercise of the mission at `index` of those asked for; it is what a process is given."""
+    """An exercise of one of the missions asked for, by its number; it is what a process is given."""
 
-    index: int
+    number: int
     exercise: Exercise
 
 
@@ -49,8 +50,8 @@ def run(asked: argparse.Namespace) -> int:
         raise InputError(f"--seeds {asked.seeds}: is not a number of seeds from 1 to {_MOST_SEEDS}.")
     missions = _missions(asked)
     flights = [
-        Flight(index, exercise)
-        for index, (_, mission) in enumerate(missions)
+        Flight(number, exercise)
+        for number, (_, mission) in enumerate(missions)
         for exercise in exercises(mission, asked.seeds)
     ]
     jobs = processes(asked.jobs, len(flights))
@@ -76,21 +77,8 @@ def exercises(mission: Mission, seeds: int) -> list[Exercise]:
     return [*flown, Exercise(mission, NOBODY, 0)]
 
 
-def reference_of(mission: Mission, flown: Sequence[Flown]) -> Reference:
-    """Return what the people reached, for those who will fly the mission after them."""
-    by_person = {name: [each for each in flown if each.operator == name] for name in PEOPLE}
-    return Reference(
-        digest_of(mission),
-        {
-            name: {each.seed: each.measures for each in sorted(them, key=lambda flight: flight.seed)}
-            for name, them in by_person.items()
-        },
-        {name: each.track for name, them in by_person.items() for each in them if each.seed == 0},
-    )
-
-
 def _fly(flight: Flight) -> tuple[int, Flown]:
-    return flight.index, fly(flight.exercise)
+    return flight.number, fly(flight.exercise)
 
 
 def _standings(
@@ -100,34 +88,24 @@ def _standings(
     flown: list[list[Flown]] = [[] for _ in missions]
     expected = len(flights) // len(missions)
     with closing(fly_here(_fly, flights, jobs)) as results:
-        for index, result in results:
+        for number, result in results:
             progress.add(result.flown)
-            flown[index].append(result)
-            if len(flown[index]) == expected:
-                yield _keep(*missions[index], flown[index])
+            flown[number].append(result)
+            if len(flown[number]) == expected:
+                yield _keep(*missions[number], flown[number])
 
 
 def _keep(path: Path, mission: Mission, flown: Sequence[Flown]) -> Standing:
     """Write the par, where the mission is one that can be flown and must be."""
-    fault = _fault(flown)
-    if not fault:
+    standing = standing_of(mission, flown)
+    if not standing.fault:
         try:
-            save_reference(reference_of(mission, flown), path)
+            save_reference(standing.reference, path)
         except OSError as error:
             raise InputError(
                 f"{error.filename}: cannot be written ({error.strerror}); copy the mission to a folder of yours."
             ) from error
-    return Standing(mission, flown, fault)
-
-
-def _fault(flown: Sequence[Flown]) -> str:
-    """Return why the flights make no par, or ""."""
-    failed = next((each for each in flown if each.operator == EXPERT and each.shortcomings), None)
-    if failed:
-        return f"the expert fails on seed {failed.seed}: {'; '.join(failed.shortcomings)}"
-    if any(each.operator == NOBODY and not each.shortcomings for each in flown):
-        return "a hand that does nothing passes; ask for something"
-    return ""
+    return standing
 
 
 def _missions(asked: argparse.Namespace) -> list[Asked]:

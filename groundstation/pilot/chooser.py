@@ -96,6 +96,16 @@ def commanded(chosen: Chosen, buttons: int, settings: Buttons) -> tuple[CommandK
     return tuple(kind for name, kind in _COMMANDING.items() if _held(new, getattr(settings, name)))
 
 
+def enabled(buttons: int, settings: Buttons) -> bool:
+    """Say whether the enable control is held, where there is one."""
+    return settings.enable < 0 or _held(buttons, settings.enable)
+
+
+def squeezed(buttons: int, settings: Buttons) -> bool:
+    """Say whether the enable control is squeezed through."""
+    return _held(buttons, settings.panic)
+
+
 def at_tick(chosen: Chosen, settings: Buttons) -> Choices:
     """Return the choices at a tick, with what the buttons add while they are held."""
     choices, buttons = chosen

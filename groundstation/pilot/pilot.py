@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 from drivers.device import ZERO3, DeviceInfo, Vector3
 from drivers.vectors import slewed
 from groundstation.config import Settings
+from groundstation.failsafe import late
 from groundstation.frames import Vector4
 from groundstation.messages import MappingMode, Phase
 from groundstation.pilot.controller import (
@@ -313,7 +314,7 @@ class Pilot:
     ) -> tuple[float, Vector3]:
         """Return the force's presence and the force: it comes in gently and leaves with a stale state."""
         dt, settings = inputs.dt, self._settings
-        if not inputs.state_age <= settings.safety.force_stale_s:
+        if late(inputs.state_age, settings.safety):
             return 0.0, self._faded(force, dt)
         presence = min(1.0, presence + dt / settings.limits.force_ramp_s)
         wanted = hand_force(cues, self._references.by_rate.turn(vehicle_yaw), self._force_limit)

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import gc
 import time
+from math import hypot
 
 import msgspec
 
@@ -19,6 +20,7 @@ from groundstation.clock import Clock, Every, Pacer
 from groundstation.config import differences
 from groundstation.devices.keeper import ABSENT, DeviceKeeper, Keeper
 from groundstation.devices.making import flight_device
+from groundstation.devices.unpluggable import Unpluggable
 from groundstation.messages import COMMAND, Command, CommandKind, MappingMode, Phase, Severity
 from groundstation.pilot.chooser import (
     CHOOSING,
@@ -26,8 +28,10 @@ from groundstation.pilot.chooser import (
     at_tick,
     beginning,
     commanded,
+    enabled,
     obeyed,
     pressed,
+    squeezed,
 )
 from groundstation.pilot.engagement import (
     Conditions,
@@ -48,6 +52,7 @@ from groundstation.pilot.pilot import Memory, Outputs, Pilot
 from groundstation.pilot.realtime import request_realtime
 from groundstation.pilot.sight import ZERO4
 from groundstation.pilot.surroundings import surroundings_of
+from groundstation.pilot.unplugging import Unplugging
 from groundstation.pilot.vehicle_feed import VehicleFeed
 from groundstation.run import Run, read_run, run_file
 
@@ -177,16 +182,15 @@ class Servo:
 
     def _made(self) -> Pilot:
         """Return the controller for settings, device and vehicle: no faster than that allows itself."""
-        limits = bounded(self._settings.limits, self._speed_limits)
-        settings = msgspec.structs.replace(self._settings, limits=limits)
+        self._allowed = bounded(self._settings.limits, self._speed_limits)
+        settings = msgspec.structs.replace(self._settings, limits=self._allowed)
         return Pilot(settings, self._info, self._surroundings, self._controller)
 
     def _take_speed_limits(self) -> None:
         """Fit the controller to the speeds that the vehicle allows; a hand that is coupled is let go first."""
-        before = bounded(self._settings.limits, self._speed_limits)
         self._speed_limits = self._feed.speed_limits
         now = bounded(self._settings.limits, self._speed_limits)
-        if now == before:
+        if now == self._allowed:
             return
         self._engagement, ending = disengage(self._engagement, "the vehicle's speed limits have changed")
         if ending:
@@ -213,6 +217,7 @@ class Servo:
         feed = self._feed
         hand = handle if handle is not None else AT_REST
         self._homed = hand.homed
+        east, north, up, _ = feed.sample.velocity
         conditions = Conditions(
             t=now,
             gap=now - self._last_t,
@@ -231,6 +236,12 @@ class Servo:
             boots=feed.boots,
             link_fault=link_fault(feed.delay, feed.loss, self._settings.link),
             unsafe=feed.unsafe,
+            enabled=enabled(hand.buttons, self._settings.buttons),
+            squeezed=squeezed(hand.buttons, self._settings.buttons),
+            speed=hypot(east, north),
+            climb=abs(up),
+            speed_limit=self._allowed.horizontal_speed,
+            climb_limit=self._allowed.vertical_speed,
         )
         self._last_t = now
         return hand, conditions
@@ -333,7 +344,9 @@ def body(run: Run, bus: Bus, lifeline: Lifeline) -> None:
         device = flight_device(run.device, run.settings)
     except DeviceError as error:
         raise SystemExit(str(error)) from error
-    servo = Servo(run, bus, DeviceKeeper(device, bus.event, time.monotonic))
+    unpluggable = Unpluggable(device, time.monotonic)
+    unplugging = Unplugging(bus, unpluggable, simulated=run.simulated)
+    servo = Servo(run, bus, DeviceKeeper(unpluggable, bus.event, time.monotonic))
     words = request_realtime()
     if words:
         bus.event(Severity.INFO, words)
@@ -341,12 +354,12 @@ def body(run: Run, bus: Bus, lifeline: Lifeline) -> None:
     gc.freeze()
     gc.disable()
     try:
-        turn(servo, lifeline, realtime=not words)
+        turn(servo, unplugging, lifeline, realtime=not words)
     finally:
         servo.close()
 
 
-def turn(servo: Servo, lifeline: Lifeline, *, realtime: bool) -> None:
+def turn(servo: Servo, unplugging: Unplugging, lifeline: Lifeline, *, realtime: bool) -> None:
     """Keep the servo ticking at its device's rate."""
     rate = servo.rate
     pacer = Pacer(1.0 / rate, spin=SPIN_S if realtime else 0.0)
@@ -354,6 +367,7 @@ def turn(servo: Servo, lifeline: Lifeline, *, realtime: bool) -> None:
     while lifeline.holds():
         late.add(pacer.wait())
         now = time.monotonic()
+        unplugging.turn(now)
         servo.tick(now, pacer.elapsed)
         servo.report(now, late, pacer.missed, realtime=realtime)
         if servo.rate != rate:

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 EVENTS = "/events"
 COMMANDS = f"{EVENTS}/commands"
+SCORE = f"{EVENTS}/score"
 REASON = "/pilot/reason"
 GUARDED = "/pilot/guarded_by"
 UNSAFE = "/vehicle/unsafe"
 PARAMETERS = "/vehicle/parameters"
+INTERVENTIONS = "/interventions"
 # Static text of the whole flight.
 ABOUT = "/about"
 
@@ -31,6 +33,7 @@ STOP = "/world/stop"
 PROSPECT = "/world/prospect"
 ECHOES = "/world/echoes"
 INCIDENTS = "/world/incidents"
+LOSSES = "/world/points_lost"
 GHOST = "/world/ghost"
 GHOST_TRAIL = "/world/ghost_trail"
 # Length of the arrow that shows the force on the hand, m a newton.
@@ -65,4 +68,5 @@ SCENE: tuple[tuple[str, str], ...] = (
         "where the flight that is followed was so long after take-off, and the way it came",
     ),
     (INCIDENTS, "collisions and alarms, as points where the vehicle was then"),
+    (LOSSES, "the moments that cost points, where the vehicle was then, once it has landed"),
 )

@@ -17,6 +17,7 @@ from pathlib import Path
 import rerun as rr
 import rerun.blueprint as rrb
 
+from groundstation.failsafe import BY_FAULT, Fault
 from groundstation.recording import schema
 from groundstation.recording.item import Item, send
 from groundstation.recording.program import optimise
@@ -26,6 +27,7 @@ SYNC_S = 1.0
 _ORDER_S = 5.0
 _FLUSH_S = 10.0
 _FULL_BYTES = 1 << 20
+_FULL = BY_FAULT[Fault.DISK_FULL]
 
 
 class RecordingError(Exception):
@@ -49,7 +51,8 @@ class FlightFile:
         self._stream = rr.RecordingStream(schema.APPLICATION, recording_id=recording_id)
         self._failure = ""
         try:
-            self._stream.save(self.path, default_blueprint=blueprint)
+            # With one it would keep something of every chunk in memory, 0.3 MB a second; `close` adds it.
+            self._stream.save(self.path, default_blueprint=blueprint, write_footer=False)
         except RuntimeError as error:
             os.close(self._fd)
             self.path.unlink(missing_ok=True)
@@ -134,6 +137,4 @@ def _sentence(path: Path) -> str:
     except OSError:
         full = False
     why = os.strerror(errno.ENOSPC) if full else "the disk refuses it"
-    return (
-        f"This flight is no longer recorded: {path} cannot be written ({why}); free the disk and start anew."
-    )
+    return f"{_FULL.words}: {path} cannot be written ({why}); free the disk and start anew."

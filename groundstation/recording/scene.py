@@ -82,6 +82,9 @@ def _looks() -> Iterator[Still]:
         entities.INCIDENTS,
         rr.Points3D.from_fields(colors=[palette.VERMILION], radii=[0.1], show_labels=True),
     )
+    yield Still(
+        entities.LOSSES, rr.Points3D.from_fields(colors=[palette.ORANGE], radii=[0.08], show_labels=False)
+    )
     yield Still(entities.FORCE_ARROW, rr.Arrows3D.from_fields(colors=[palette.FORCE], radii=[0.04]))
 
 

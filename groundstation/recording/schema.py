@@ -15,7 +15,8 @@ from groundstation.recording.entities import SCENE
 from groundstation.recording.lanes import LANES
 
 APPLICATION = "groundstation"
-# 5: what the flight is held against, and where it lost points; guidance of the hand, and a ghost in the scene.
+# 5: what the flight is held against, and where it lost points; guidance of the hand, and a ghost in the scene; what
+#    an instructor or a timetable let happen.
 # 4: all that a tick of the servo was made from, to the last bit.
 # 3: every attitude and body rate that the vehicle tells, and commands and answers as numbers.
 # 2: what stands around equations (4) and (5), and the vehicle's own distance sensors. A reader of 5 reads 1 to 4.
@@ -300,6 +301,14 @@ CLEARANCE = Quantity(
 LEGS = Quantity("/mission/legs", ("flown", "of"), "legs", "mission", "How far along the route")
 COLLISIONS = Quantity("/mission/collisions", ("collisions",), "contacts", "mission", "With obstacles, so far")
 
+LOST = Quantity(
+    "/mission/lost",
+    ("points", "length"),
+    "of 100, s",
+    "once landed",
+    "What a moment cost of the score, and how long it was",
+)
+
 QUANTITIES: tuple[Quantity, ...] = (
     HANDLE_POSITION, HANDLE_VELOCITY, SAMPLE_AGE, HANDLE_FORCE, HANDLE_ENERGY, HANDLE_BUTTONS,
     HANDLE_READY, CENTRED, SETPOINT_NUMBER,
@@ -313,7 +322,7 @@ QUANTITIES: tuple[Quantity, ...] = (
     STATE_AGE, HANDLE_AGE, ROUND_TRIP, RECKONED, SILENCE,
     LOSS, GATE,
     SERVO_RATE, SERVO_LATE, SERVO_RUN, REALTIME, SERVO_TIME, SERVO_TICKS, TICK, KNOWN, LIMITS,
-    TARGET_DISTANCE, CLEARANCE, LEGS, COLLISIONS,
+    TARGET_DISTANCE, CLEARANCE, LEGS, COLLISIONS, LOST,
     COMMANDED, ANSWERED,
 )  # fmt: skip
 

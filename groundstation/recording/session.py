@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-import datetime
 import threading
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
+from groundstation.conditions import Conditions
+from groundstation.failsafe import BY_FAULT, Fault
 from groundstation.messages import DEVICE_REPORT, Severity
 from groundstation.recording.about import about_device, about_flight
 from groundstation.recording.batch import Batch
@@ -19,32 +20,22 @@ from groundstation.recording.file import FlightFile, RecordingError
 from groundstation.recording.gauges import Gauges
 from groundstation.recording.ghost import Ghost
 from groundstation.recording.incidents import Incidents
+from groundstation.recording.interventions import Interventions
 from groundstation.recording.item import Item
 from groundstation.recording.motion import Motion
 from groundstation.recording.parts import part_path
 from groundstation.recording.room import left_gb
 from groundstation.recording.scene import static_scene
+from groundstation.recording.story import Story
 from groundstation.recording.style import static_styles
 from groundstation.run import Run
 
 Tell = Callable[[Severity, str], None]
 
-_LONGEST_START_S = 60.0
 _MB = 1e6
+_DISK_LOW = BY_FAULT[Fault.DISK_LOW]
 # Of a record all but its time.
 _AFTER_TIME = 8
-
-
-def start_of(started: str, wall: datetime.datetime, monotonic: float) -> float:
-    """Return when a run was started on the monotonic clock, s.
-
-    Args:
-        started: Wall-clock time of the start, ISO 8601.
-        wall: Wall-clock time now.
-        monotonic: Monotonic time now, s; also the answer where the wall clock was put right in between.
-    """
-    age = (wall - datetime.datetime.fromisoformat(started)).total_seconds()
-    return monotonic - age if 0.0 <= age <= _LONGEST_START_S else monotonic
 
 
 class Translator:
@@ -65,7 +56,9 @@ class Translator:
         self._echoes = Echoes(start)
         self._gauges = Gauges(start, run.settings.shield)
         self._incidents = Incidents(start)
+        self._story = Story(start)
         self._ghost = Ghost(start, run.ghost)
+        self._interventions = Interventions(start)
         self._device = b""
 
     def opening(self) -> Iterator[Item]:
@@ -85,7 +78,9 @@ class Translator:
         yield from self._echoes.chunks(batch)
         yield from self._gauges.chunks(batch)
         yield from self._incidents.chunks(batch)
+        yield from self._story.chunks(batch)
         yield from self._ghost.chunks(batch)
+        yield from self._interventions.chunks(batch)
         for report in batch.of(DEVICE_REPORT):
             if report.present and (known := bytes(report)[_AFTER_TIME:]) != self._device:
                 self._device = known
@@ -152,12 +147,10 @@ class Session:
             self._open(part_path(self._first, self._parts))
             self._write(list(self._translator.opening()))
         left = left_gb(file.path.parent)
-        if left < self._limits.warn_gb and not self._told_full:
+        c = Conditions(disk_gb=left, disk_least_gb=self._limits.warn_gb)
+        if _DISK_LOW.holds(c, self._run.settings.safety) and not self._told_full:
             self._told_full = True
-            self._tell(
-                Severity.WARNING,
-                f"The disk of {file.path.parent} has {left:.1f} GB left; make room after this flight.",
-            )
+            self._tell(_DISK_LOW.severity, f"The disk of {file.path.parent} has {_DISK_LOW.say(c)}.")
 
     def _end(self, file: FlightFile) -> None:
         """End a file and put it in order."""

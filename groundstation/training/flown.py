@@ -11,7 +11,7 @@ from msgspec.structs import replace
 from groundstation.errors import InputError
 from groundstation.recording import lanes, schema
 from groundstation.review.flight import Flight, Numbers
-from groundstation.review.outcome import COUPLED, words_at
+from groundstation.review.sights import COUPLED, words_at
 from groundstation.training.courses import time_for
 from groundstation.training.mission import Criteria, Fence, Mission, Target, Waypoint
 
@@ -99,7 +99,7 @@ def _way_by_hand(flight: Flight) -> Numbers:
     """
     t, positions = flight.series(schema.POSITION)
     coupled = np.array([word in COUPLED for word in words_at(flight, lanes.PHASE, t)], dtype=bool)
-    known = np.isfinite(positions[:, :3]).all(axis=1)
+    known = np.isfinite(positions[:, :3].sum(axis=1))
     places = np.flatnonzero(coupled & known)
     if not len(places):
         raise InputError(

@@ -13,6 +13,8 @@ from groundstation.errors import InputError
 from groundstation.training.checking import faults, misplaced
 from groundstation.training.curriculum import Lesson, lessons
 from groundstation.training.mission import Mission, MissionError, load_mission
+from groundstation.training.par import par_in
+from groundstation.training.reference import load_reference, reference_fault
 from sim.airframe import load_airframe
 from sim.scenario import ScenarioError
 
@@ -25,11 +27,13 @@ def show_all(asked: argparse.Namespace) -> int:
     if asked.json:
         print(json.dumps([_fields(lesson) for lesson in found], indent=1))
         return 0
-    wide = max(len(lesson.mission.name) for lesson in found)
+    names, skills = (max(map(len, words)) for words in zip(*map(_words, found), strict=True))
+    print(f"{'':<{names + 2}}  {'trains':<{skills}}  {'par':>6}")
     for group, members in itertools.groupby(found, _group):
-        print(f"{group}")
-        for _, mission in members:
-            print(f"  {mission.name:<{wide}}  {mission.title}{_trained(mission)}")
+        print(group)
+        for lesson in members:
+            name, skill = _words(lesson)
+            print(f"  {name:<{names}}  {skill:<{skills}}  {_par(lesson):>6}  {lesson.mission.title}")
     return 0
 
 
@@ -45,6 +49,8 @@ def check(asked: argparse.Namespace) -> int:
             codes.append(2)
         else:
             codes.append(told(str(path), mission, sys.stdout, shipped))
+            if mission.judged and (unmeasured := reference_fault(mission, path)):
+                print(unmeasured)
     return max(codes)
 
 
@@ -83,8 +89,20 @@ def _group(lesson: Lesson) -> str:
     return f"level {mission.level}: {_LEVELS[mission.level]}" if mission.judged else "free: nothing is judged"
 
 
-def _trained(mission: Mission) -> str:
-    return f"  ({', '.join(mission.skills)})" if mission.skills else ""
+def _words(lesson: Lesson) -> tuple[str, str]:
+    """Return a mission's name and what it is mainly for."""
+    return lesson.mission.name, lesson.mission.skills[0] if lesson.mission.skills else ""
+
+
+def _par(lesson: Lesson) -> str:
+    seconds = _par_s(lesson)
+    return "" if seconds is None else f"{seconds:.0f} s"
+
+
+def _par_s(lesson: Lesson) -> float | None:
+    """Return how long the reference operator takes on seed 0, s; None where nobody has measured it."""
+    par, _ = par_in(load_reference(lesson.mission, lesson.path), 0)
+    return par.time_s if par else None
 
 
 def _fields(lesson: Lesson) -> dict[str, object]:
@@ -97,5 +115,6 @@ def _fields(lesson: Lesson) -> dict[str, object]:
         "skills": mission.skills,
         "needs": mission.needs,
         "judged": mission.judged,
+        "par_s": _par_s(lesson),
         "file": str(path),
     }

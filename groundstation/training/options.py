@@ -23,8 +23,8 @@ exit codes: 0 done; 1 a mission cannot be flown as it is, and why is told; 2 bad
 """
 _MEASURE = """\
 A novice, an average and an expert operator fly each mission in virtual time, and once a hand that does nothing. What
-they reach is written to reference/NAME.json beside the mission: its par, and a ghost to follow. It is not written where
-the expert does not pass, or where doing nothing does: then the exit code is 1."""
+they reach is written to reference/NAME.json beside the mission: its par, and a ghost to follow. It is not written
+where the expert does not pass, or where doing nothing does: then the exit code is 1."""
 RUN = "groundstation.missions_command:run"
 
 
@@ -38,7 +38,9 @@ def fill(parser: argparse.ArgumentParser) -> None:
     check = acts.add_parser("check", help="say whether missions can be flown, and what is wrong")
     check.add_argument("files", nargs="+", type=Path, metavar="FILE")
     _fill_new(acts.add_parser("new", help="make a mission out of a seed or of a recorded flight"))
-    _fill_measure(acts.add_parser("measure", help="find the par: simulated operators fly it", description=_MEASURE))
+    _fill_measure(
+        acts.add_parser("measure", help="find the par: simulated operators fly it", description=_MEASURE)
+    )
 
 
 def _fill_measure(parser: argparse.ArgumentParser) -> None:

@@ -22,7 +22,7 @@ def toml_of(mission: Mission) -> str:
 
 
 def _in_a_line(array: re.Match[str]) -> str:
-    items = ", ".join(line.strip().removesuffix(",") for line in array[1].splitlines())
+    items = ", ".join(line.strip().removesuffix(",") for line in array[1].rstrip("\n").split("\n"))
     return f"[{items}]" if len(items) <= _WIDEST else array[0]
 
 

@@ -5,6 +5,8 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
+from groundstation.conditions import Conditions
+from groundstation.failsafe import BY_FAULT, Action, Fault, Who, first, rows
 from groundstation.messages import Phase, Preset, Severity
 from groundstation.pilot.presets import PRESETS
 from groundstation.tui import judge
@@ -14,15 +16,14 @@ from groundstation.tui.frame import REPORT_STALE_S, STATUS_STALE_S, Frame
 from groundstation.tui.hints import as_told
 from groundstation.tui.notes import from_event
 from groundstation.tui.rows import quantity, span_of_time
+from groundstation.vehicle.profiles import profile_of
 
 # What was said counts as being so for this long, s, and no more of it is looked through.
 _RECENT_S, _RECENT = 5.0, 12
-_CONSEQUENCES = {
-    "pilot": "no force, and the vehicle is told to hold",
-    "link": "nothing reaches the vehicle; its own failsafe holds it",
-    "sim": "the simulated vehicle has gone",
-    "recorder": "this flight is no longer recorded",
-}
+_DEATHS, _GUARD = rows(Who.SUPERVISOR, Action.RELEASE), rows(Who.PILOT, Action.BOUND)
+_LOST, _STALLED = BY_FAULT[Fault.LINK_LOST], BY_FAULT[Fault.PROCESS_STALLED]
+_BATTERY = (BY_FAULT[Fault.BATTERY_EMPTY], BY_FAULT[Fault.BATTERY_LOW])
+_OVERRUN = BY_FAULT[Fault.SERVO_OVERRUN]
 _FIGURES = re.compile(r"[\d.]+")
 
 
@@ -33,29 +34,35 @@ def conditions(frame: Frame) -> list[Condition]:
 
 
 def _processes(frame: Frame) -> Iterator[Condition]:
-    for role, consequence in _CONSEQUENCES.items():
-        state = frame.states.get(role)
-        if state in {"ended", "silent"}:
-            how = "has ended" if state == "ended" else "does not answer"
-            yield Condition(f"process {role}", Severity.ALARM, f"{role} {how}: {consequence}.")
+    gone = {role for role, state in frame.states.items() if state in {"ended", "silent"}}
+    safety = frame.run.settings.safety
+    # The worst first, as the table has them.
+    while row := first(_DEATHS, Conditions(ended=frozenset(gone)), safety):
+        for role in sorted(gone):
+            if row.holds(Conditions(ended=frozenset({role})), safety):
+                gone.remove(role)
+                how = "has ended" if frame.states[role] == "ended" else _STALLED.words
+                yield Condition(f"process {role}", row.severity, f"{role} {how}: {row.words}.")
 
 
 def _link(frame: Frame) -> Iterator[Condition]:
-    status = frame.snapshot.status
+    status, safety = frame.snapshot.status, frame.run.settings.safety
     if status is None or not status.heard_t:
         return
     age = judge.link_age(status, frame.now)
-    severity = judge.link(status, frame.now, frame.run.settings.safety.link_warning_s)
-    if severity is Severity.ALARM:
-        yield Condition("link", severity, f"Link lost: the vehicle has been silent for {span_of_time(age)}.")
-    elif severity is Severity.WARNING:
-        yield Condition("link", severity, f"The vehicle has been silent for {span_of_time(age)}.")
+    c = Conditions(connected=bool(status.connected), silence=age, battery=status.battery)
+    if _LOST.holds(c, safety):
+        yield Condition("link", _LOST.severity, _LOST.say(c))
+    elif judge.link(status, frame.now, safety.link_warning_s) is not Severity.INFO:
+        yield Condition("link", Severity.WARNING, f"The vehicle has been silent for {span_of_time(age)}.")
     elif frame.age(status) > STATUS_STALE_S:
         text = f"No word from the link process for {span_of_time(frame.age(status))}."
         yield Condition("link process", Severity.WARNING, text)
-    battery = judge.battery(status.battery)
-    if battery is not Severity.INFO:
-        yield Condition("battery", battery, f"Battery at {quantity(100 * status.battery, '%', 0)}: land.")
+    if row := first(_BATTERY, c, safety):
+        yield Condition("battery", row.severity, row.say(c))
+    if (profile := profile_of(status.autopilot)) and not profile.tested:
+        text = f"{profile.name} has never been flown with this program: untested."
+        yield Condition("untested", Severity.INFO, text)
 
 
 def _state(frame: Frame) -> Iterator[Condition]:
@@ -89,9 +96,9 @@ def _servo(frame: Frame) -> Iterator[Condition]:
     servo = frame.snapshot.servo
     if servo is None or frame.age(servo) > REPORT_STALE_S:
         return
-    if judge.lateness(servo) is Severity.ALARM:
-        late = quantity(1000 * servo.late_p99, "ms", 1)
-        yield Condition("servo", Severity.WARNING, f"The servo is late by {late} (p99): the force is rough.")
+    c = Conditions(late=servo.late_p99 * servo.rate)
+    if _OVERRUN.holds(c, frame.run.settings.safety):
+        yield Condition("servo", _OVERRUN.severity, _OVERRUN.say(c))
     if not servo.realtime:
         text = "The servo has no real-time priority: a busy machine makes it late."
         yield Condition("priority", Severity.INFO, text)
@@ -104,8 +111,9 @@ def _advice(frame: Frame) -> Iterator[Condition]:
         return
     if pilot.on_leash:
         yield Condition("leash", Severity.INFO, "On the leash: the vehicle does not keep up with the hand.")
-    if frame.guarded_by:
-        yield Condition("guard", Severity.INFO, f"The guard acts: {frame.guarded_by}.")
+    c = Conditions(guarded_by=frame.guarded_by)
+    if row := first(_GUARD, c, frame.run.settings.safety):
+        yield Condition("guard", row.severity, row.say(c))
     if not PRESETS[Preset(pilot.preset)].guard:
         yield Condition("no guard", Severity.INFO, "No guard: nothing keeps the vehicle from obstacles.")
     if min(pilot.gain_share, pilot.speed_share) < 1.0:

@@ -7,7 +7,7 @@ import argparse
 from rich.console import Console
 from rich.text import Text
 
-from groundstation.training.briefing import briefing
+from groundstation.training.briefing import briefing, par_words
 from groundstation.training.mission import Mission, find_mission, load_mission
 from groundstation.tui.canvas import Canvas
 from groundstation.tui.rows import Row
@@ -34,7 +34,7 @@ def run(asked: argparse.Namespace) -> int:
     mission = load_mission(path)
     console = Console(highlight=False)
     width = min(console.width, _WIDEST)
-    for line in briefing(mission, width):
+    for line in briefing(mission, par_words(mission, path), width):
         console.print(Text(line))
     console.print(Text(f"fly it   groundstation --sim --mission {asked.mission}\n"))
     for row in chart(mission, width):

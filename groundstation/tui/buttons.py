@@ -7,6 +7,8 @@ from groundstation.messages import Handle
 
 # In the order of a map that is read: what is used most first.
 MEANINGS = {
+    "enable": "enable, while held: let go, it releases the hand",
+    "panic": "squeezed through: releases the hand",
     "clutch": "clutch, while held",
     "fine": "fine, while held",
     "turn_left": "turn left, while held",

@@ -10,7 +10,7 @@ from groundstation.tui.frame import Frame
 
 
 def checks(frame: Frame) -> list[Check]:
-    """Return all checks: what forbids to fly first, else the hand's, the vehicle's, its own failsafes."""
+    """Return all checks, the worst first, else the hand's, the vehicle's, its own failsafes."""
     found = [
         here.device(frame),
         here.handle(frame),
@@ -29,7 +29,7 @@ def checks(frame: Frame) -> list[Check]:
         here.recording(frame),
         *vehicle.parameters(frame),
     ]
-    return sorted(found, key=lambda check: check.severity is not Severity.ALARM)
+    return sorted(found, key=lambda check: -check.severity)
 
 
 def red(frame: Frame) -> int:

@@ -9,6 +9,7 @@ from pathlib import Path
 
 from groundstation.messages import Severity
 from groundstation.tui import judge
+from groundstation.tui.buttons import held
 from groundstation.tui.check import Check
 from groundstation.tui.frame import REPORT_STALE_S, Frame
 from groundstation.tui.notes import words
@@ -42,6 +43,11 @@ def handle(frame: Frame) -> Check:
     if not age <= frame.run.settings.safety.handle_stale_s:
         state = f"last heard {span_of_time(age)} ago" if math.isfinite(age) else "not heard"
         return Check("handle", _DANGER, state, "see that the device is connected")
+    enable = frame.run.settings.buttons.enable
+    if enable >= 0 and enable not in held(handle):
+        return Check(
+            "handle", _CAUTION, "enable control not held", f"hold button {enable} to engage and to fly"
+        )
     pilot = frame.pilot
     if pilot is not None and not pilot.centred:
         return Check("handle", _CAUTION, "heard, not centred", "bring it to its centre to engage")

@@ -55,7 +55,7 @@ def identity(frame: Frame) -> Check:
     """Return who the vehicle is and what firmware it runs."""
     status = frame.snapshot.status
     if status is None or not status.connected:
-        return Check("vehicle", _DANGER, "not known", "switch it on, check the address")
+        return Check("vehicle", _CAUTION, "not known", "see the link")
     profile, version = profile_of(status.autopilot), words(status.firmware)
     component = f", component {status.component}" if status.component else ""
     who = f"system {status.system_id}{component}"
@@ -74,7 +74,7 @@ def health(frame: Frame) -> Check:
     """Return what the vehicle says of its sensors, and whether it can be armed."""
     status = frame.snapshot.status
     if status is None or not status.connected:
-        return Check("health", _DANGER, "not known", "switch it on, check the address")
+        return Check("health", _CAUTION, "not known", "see the link")
     known = Health(status.health)
     missing = [name for flag, name in _CALIBRATED.items() if flag not in known]
     if missing:
@@ -157,8 +157,8 @@ def speeds(frame: Frame) -> Check:
         )
     used = bounded(limits, (told[0], told[1], told[2]))
     state = (
-        f"{used.horizontal_speed:.3g} m/s around, {used.vertical_speed:.3g} up and down; "
-        f"the vehicle's {told[0]:.3g}, {told[1]:.3g}, {told[2]:.3g}"
+        f"{used.horizontal_speed:.3g} m/s around, {used.vertical_speed:.3g} up, down; "
+        f"its own {told[0]:.3g}, {told[1]:.3g}, {told[2]:.3g}"
     )
     if used != limits:
         return Check("speed limits", _CAUTION, state, "[limits] allows more: the vehicle's are kept")

@@ -4,17 +4,15 @@ from __future__ import annotations
 
 import math
 
+from groundstation.failsafe import BATTERY_EMPTY, BATTERY_LOW, LINK_LOST_S, OVERRUN_TICKS
 from groundstation.messages import FlightMode, ServoReport, Severity, VehicleStatus
 
-# Above this a vehicle's connection counts as lost; PX4's own offboard loss (COM_OF_LOSS_T) is 1 s.
-LINK_LOST_S = 2.0
 LOSS_WARNING, LOSS_ALARM = 0.02, 0.10
 # Time-domain passivity has been shown to 0.7 s of round trip; a quarter of a second is clearly seen.
 RTT_WARNING_S, RTT_ALARM_S = 0.25, 0.70
-BATTERY_WARNING, BATTERY_ALARM = 0.30, 0.15
 MISSED_WARNING, MISSED_ALARM = 0.001, 0.01
 # Ticks of lateness: one means that a whole tick was lost.
-LATE_WARNING, LATE_ALARM = 1.0, 5.0
+LATE_WARNING = 1.0
 # A few missed while starting up are no share of anything yet.
 _TICKS_TO_JUDGE = 10_000
 _MODES = frozenset(FlightMode)
@@ -44,12 +42,12 @@ def battery(share: float) -> Severity:
     """Judge what is left, 0 to 1; a vehicle that does not say is no alarm."""
     if not math.isfinite(share):
         return Severity.INFO
-    return above(-share, -BATTERY_WARNING, -BATTERY_ALARM)
+    return above(-share, -BATTERY_LOW, -BATTERY_EMPTY)
 
 
 def lateness(servo: ServoReport) -> Severity:
     """Judge the servo's lateness (99th percentile) against its tick."""
-    return above(servo.late_p99 * servo.rate, LATE_WARNING, LATE_ALARM)
+    return above(servo.late_p99 * servo.rate, LATE_WARNING, OVERRUN_TICKS)
 
 
 def missed(servo: ServoReport) -> Severity:

@@ -84,8 +84,8 @@ class Gate:
         self._authorised.clear()
 
     def passes(self, frame: bytes) -> bool:
-        """Say whether a MAVLink frame may leave."""
-        number = message_number(frame)
+        """Say whether a MAVLink frame may leave; with something behind it, it is none."""
+        number = message_number(frame) if frame and len(frame) == _length(frame, 0) else -1
         if number == SET_POSITION_TARGET_LOCAL_NED:
             passes = self._is_fresh(frame)
             self.sent += passes
@@ -128,7 +128,7 @@ class Gate:
 
 
 def message_number(frame: bytes) -> int:
-    """Return a frame's message id, or -1 where it is not MAVLink."""
+    """Return the message id of the frame that data begins with, or -1 where it is not MAVLink."""
     if len(frame) >= 12 and frame[0] == _V2:
         return frame[7] | frame[8] << 8 | frame[9] << 16
     if len(frame) >= 8 and frame[0] == _V1:
@@ -151,11 +151,18 @@ def origin(frame: bytes) -> tuple[int, int, int]:
 
 
 def split_frames(data: bytes) -> list[bytes]:
-    """Cut well-formed bytes, as MAVSDK hands them out, into MAVLink frames."""
+    """Cut bytes as MAVSDK hands them out into MAVLink frames; what is none stays in one piece."""
     frames: list[bytes] = []
     start = 0
     while start + 8 <= len(data):
-        length = data[start + 1] + (8 if data[start] == _V1 else 12 + 13 * (data[start + 2] & 1))
+        length = _length(data, start) or len(data) - start
         frames.append(data[start : start + length])
         start += length
     return frames
+
+
+def _length(data: bytes, start: int) -> int:
+    """Return how long the frame is that begins there: with its checksum, and in MAVLink 2 perhaps a signature."""
+    if data[start] == _V1:
+        return data[start + 1] + 8
+    return data[start + 1] + 12 + 13 * (data[start + 2] & 1) if data[start] == _V2 else 0

@@ -6,17 +6,23 @@ bus ◄──state, obstacles, status, answers, events── VehicleView, Obstac
 
 from __future__ import annotations
 
+import contextlib
+import ctypes
 import math
 import queue
 import threading
 import time
 from collections import deque
+from pathlib import Path
 
 import mavsdk
 from mavsdk import Configuration, Mavsdk, System
 
 from groundstation.bus import Bus
 from groundstation.child import Lifeline, run_child
+from groundstation.conditions import Conditions
+from groundstation.errors import InputError
+from groundstation.failsafe import BY_FAULT, Fault
 from groundstation.frames import Vector4
 from groundstation.messages import (
     ANSWER_TEXT,
@@ -38,18 +44,21 @@ from groundstation.messages import (
     fit,
 )
 from groundstation.run import Run
+from groundstation.vehicle.asleep import Sleep
 from groundstation.vehicle.commander import STEERING, Answer, Commander
 from groundstation.vehicle.gate import Gate
 from groundstation.vehicle.identity import Identity
+from groundstation.vehicle.interventions import Interventions
 from groundstation.vehicle.obstacle_view import ObstacleView
 from groundstation.vehicle.offboard import Act, OffboardStream, Seen
 from groundstation.vehicle.parameter_desk import PARAMETER_COMMANDS, ParameterDesk
 from groundstation.vehicle.profiles import profile_of
 from groundstation.vehicle.pump import Pump
 from groundstation.vehicle.round_trip import RoundTrip
+from groundstation.vehicle.signing import Refusals, Signing, read_key
 from groundstation.vehicle.telemetry import Notes, VehicleView
 from groundstation.vehicle.tlog import TlogWriter
-from groundstation.vehicle.transport import TransportError, UrlError, open_transport, parse_url
+from groundstation.vehicle.transport import TransportError, open_transport, parse_url
 
 ROLE = "link"
 # MAV_COMP_ID_MISSIONPLANNER: the ground station's usual component, with the usual GCS system id.
@@ -60,6 +69,8 @@ _DISCOVERY_S = 0.05
 _DEFAULT_TAKEOFF_M = 2.0
 _REASON_S = 1.5
 _LEAVE_S = 0.2
+_SILENT = BY_FAULT[Fault.LINK_SILENT]
+_M_ARENA_MAX = -8
 
 # Commands that are the pilot's to follow and to answer.
 _PILOTS = frozenset(
@@ -86,11 +97,14 @@ class Link:
         pump: Moves the bytes.
         gate: Keeps stale setpoints back.
         notes: What other threads want told as events.
+        sleep: Whether the computer slept; the gate goes by its clock.
     """
 
-    def __init__(self, run: Run, bus: Bus, mav: Mavsdk, pump: Pump, gate: Gate, *, notes: Notes) -> None:
+    def __init__(
+        self, run: Run, bus: Bus, mav: Mavsdk, pump: Pump, gate: Gate, *, notes: Notes, sleep: Sleep
+    ) -> None:
         self._run, self._bus, self._mav, self._pump, self._gate = run, bus, mav, pump, gate
-        self._notes = notes
+        self._notes, self._sleep = notes, sleep
         self._setpoints = bus.subscriber(SETPOINT, depth=1)
         self._waker = bus.waker(SETPOINT)
         self._commands = bus.subscriber(COMMAND)
@@ -101,21 +115,24 @@ class Link:
         self._answers = bus.publisher(COMMAND_ANSWER)
         self._status = VehicleStatus(rtt=math.nan, battery=math.nan, voltage=math.nan)
         self._view = VehicleView(notes, time.monotonic)
-        self._stream = OffboardStream(run.settings.safety.setpoint_stale_s)
+        self._stream = OffboardStream(run.settings.safety)
         self._commander: Commander | None = None
         self._round_trip: RoundTrip | None = None
         self._obstacles: ObstacleView | None = None
         self._desk: ParameterDesk | None = None
         self._identity: Identity | None = None
+        self._interventions = Interventions(bus, simulated=run.simulated)
         self._given = 0
         self._denials: deque[tuple[float, str]] = deque(maxlen=4)
         self._next_status = 0.0
         self._next_discovery = 0.0
         self._silent = False
+        self._refusals = Refusals()
 
     def turn(self) -> None:
         """Pass records once around; never waits."""
         now = time.monotonic()
+        self._wake()
         if self._commander is None:
             self._discover(now)
         else:
@@ -127,6 +144,7 @@ class Link:
             self._identity.turn()
         for command in self._commands.drain():
             self._obey(command, now)
+        self._interventions.turn(now)
         self._pass_on_sights()
         if self._desk:
             for answer in self._desk.pass_on(now, self._view.boots):
@@ -149,7 +167,17 @@ class Link:
 
     def close(self) -> bool:
         """End what waits for the vehicle; say whether MAVSDK may be taken away now."""
-        return self._desk is None or self._desk.close()
+        freed = self._interventions.close()
+        return (self._desk is None or self._desk.close()) and freed
+
+    def _wake(self) -> None:
+        """After a sleep nothing that was being flown goes on, however young the monotonic clock says it is."""
+        if slept := self._sleep.news():
+            words = f"this computer slept for {slept:.1f} s"
+            act, why = self._stream.interrupted(f"{words}; the vehicle holds")
+            self._do(act, why)
+            if not why:
+                self._bus.event(Severity.WARNING, f"{words[0].upper()}{words[1:]}.")
 
     def _discover(self, now: float) -> None:
         if now < self._next_discovery:
@@ -169,6 +197,7 @@ class Link:
         self._obstacles = ObstacleView(system, self._view.yaw, self._notes, time.monotonic)
         self._desk = ParameterDesk(self._bus, system, self._gate, profile)
         self._identity = Identity(system, time.monotonic)
+        self._interventions.attach(system, self._gate, lambda: time.monotonic() - self._pump.heard_t)
         self._view.attach(system, self._run.settings.rates.telemetry)
         self._status.system_id, self._status.autopilot = system.get_system_id(), system.autopilot_type()
         kind = profile.label if profile else "unknown autopilot"
@@ -191,7 +220,7 @@ class Link:
             self._commander.start_offboard()
 
     def _give(self, velocity: Vector4, made_t: float) -> None:
-        if self._commander and self._gate.authorise(velocity, made_t):
+        if self._commander and self._gate.authorise(velocity, made_t + self._sleep.seconds()):
             self._commander.fly(velocity)
 
     def _do(self, act: Act, why: str) -> None:
@@ -300,18 +329,21 @@ class Link:
             status.firmware = fit(self._identity.firmware, FIRMWARE_TEXT)
         self._statuses.send(status)
         self._watch_silence(now)
+        if words := self._refusals.news(now, self._pump.refused, heard=bool(self._pump.heard_t)):
+            self._bus.event(Severity.WARNING, words)
 
     def _watch_silence(self, now: float) -> None:
-        silence = now - self._pump.heard_t
-        silent = bool(self._pump.heard_t) and silence > self._run.settings.safety.link_warning_s
+        seen = Conditions(silence=now - self._pump.heard_t if self._pump.heard_t else 0.0)
+        silent = _SILENT.holds(seen, self._run.settings.safety)
         if silent != self._silent:
             self._silent = silent
-            words = f"The vehicle is silent for {silence:.1f} s." if silent else "The vehicle is heard again."
-            self._bus.event(Severity.ALARM if silent else Severity.INFO, words)
+            words = _SILENT.say(seen) if silent else "The vehicle is heard again."
+            self._bus.event(_SILENT.severity if silent else Severity.INFO, words)
 
 
 def body(run: Run, bus: Bus, lifeline: Lifeline) -> None:
     """Run the link until the lifeline ends."""
+    _take_one_arena()
     notes: Notes = queue.SimpleQueue()
     # It complains of a connection that is about to come; its lines count from when that is there. Subscribing
     # anew then would free the callback that a thread of MAVSDK's may be in.
@@ -320,20 +352,22 @@ def body(run: Run, bus: Bus, lifeline: Lifeline) -> None:
         lambda level, text, _file, _line: _note_log(notes, int(level), text) if connected.is_set() else True
     )
     try:
-        transport = open_transport(parse_url(run.url))
-    except (UrlError, TransportError) as error:
+        signing = Signing(read_key(Path(run.signing_key)), time.time) if run.signing_key else None
+        transport = open_transport(parse_url(run.url), lambda severity, words: notes.put((severity, words)))
+    except (InputError, TransportError) as error:
         raise SystemExit(str(error)) from error
+    sleep = Sleep()
     gate = Gate(
         run.settings.safety.setpoint_stale_s,
-        time.monotonic,
+        sleep.clock,
         lambda words: notes.put((Severity.WARNING, words)),
     )
     tlog = _open_tlog(run, notes)
-    pump = Pump(transport, gate, tlog, time.monotonic)
+    pump = Pump(transport, gate, tlog, time.monotonic, signing)
     mav = Mavsdk(Configuration.create_manual(_SYSTEM_ID, _COMPONENT_ID, always_send_heartbeats=True))
     pump.start(mav)
     connected.set()
-    link = Link(run, bus, mav, pump, gate, notes=notes)
+    link = Link(run, bus, mav, pump, gate, notes=notes, sleep=sleep)
     try:
         while lifeline.holds():
             link.turn()
@@ -349,6 +383,15 @@ def body(run: Run, bus: Bus, lifeline: Lifeline) -> None:
         mavsdk.log_unsubscribe()
 
 
+def _take_one_arena() -> None:
+    """Have all threads take their memory from one place, where the C library lets them (mallopt(3)).
+
+    glibc gives each its own. What MAVSDK's threads take there and ours give back is not found again: 2 MB a minute.
+    """
+    with contextlib.suppress(AttributeError, OSError):
+        ctypes.CDLL(None).mallopt(_M_ARENA_MAX, 1)
+
+
 def _open_tlog(run: Run, notes: Notes) -> TlogWriter | None:
     try:
         return TlogWriter(run.tlog, lambda words: notes.put((Severity.ALARM, words)))
@@ -358,8 +401,11 @@ def _open_tlog(run: Run, notes: Notes) -> TlogWriter | None:
 
 
 def _note_log(notes: Notes, level: int, text: str) -> bool:
-    """Keep MAVSDK's own lines off the terminal; its warnings become events."""
-    if level >= int(mavsdk.LogLevel.WARN):
+    """Keep MAVSDK's own lines off the terminal; its warnings become events.
+
+    Not those of the simulator's parameters: whose they are the trainee would not learn from a real vehicle.
+    """
+    if level >= int(mavsdk.LogLevel.WARN) and "(SIM_" not in text:
         notes.put((Severity.WARNING, f"MAVSDK: {text}"))
     return True
 

@@ -13,10 +13,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import IntEnum
 
+from groundstation.conditions import Conditions
+from groundstation.config import Safety
+from groundstation.failsafe import BY_FAULT, ENGAGE_TIMEOUT_S, Action, Fault, Row
 from groundstation.messages import FlightMode, Stream
 
-START_TIMEOUT_S = 3.0
 LEAD_S = 0.2
+_SILENT, _TAKEN = BY_FAULT[Fault.PILOT_SILENT], BY_FAULT[Fault.STREAM_TAKEN]
 
 
 class Act(IntEnum):
@@ -52,10 +55,10 @@ class OffboardStream:
     """Holds the state between steps.
 
     Args:
-        stale_s: Age from which a setpoint is not flown and the pilot counts as silent, s.
+        safety: Has the age from which a setpoint is not flown and the pilot counts as silent.
     """
 
-    stale_s: float
+    safety: Safety
     state: Stream = Stream.IDLE
     accepted_t: float | None = None
     _started_t: float = 0.0
@@ -63,7 +66,8 @@ class OffboardStream:
 
     def step(self, seen: Seen) -> tuple[Act, str]:
         """Advance and return what to do and, when a stream ended against the pilot's wish, why."""
-        fresh = seen.active and seen.age <= self.stale_s
+        c = Conditions(mode=seen.mode, streaming=self.state, setpoint_age=seen.age)
+        fresh = seen.active and not _SILENT.holds(c, self.safety)
         if self.state is Stream.ENDED:
             if not seen.active:
                 self.state = Stream.IDLE
@@ -77,10 +81,11 @@ class OffboardStream:
         if not seen.active:
             return self._end(Act.CLOSE_AND_HOLD)
         if not fresh:
-            return self._end(
-                Act.CLOSE_AND_HOLD, f"pilot silent for {seen.age * 1000:.0f} ms; the vehicle holds"
-            )
-        return self._starting(seen) if self.state is Stream.STARTING else self._flying(seen)
+            return self._end_by(_SILENT, c)
+        if self.state is Stream.STARTING:
+            return self._starting(seen)
+        # Someone else flies now: a pilot with a transmitter, another station, a failsafe. Never seize it back.
+        return self._end_by(_TAKEN, c) if _TAKEN.holds(c, self.safety) else (Act.NOTHING, "")
 
     def accepted(self, now: float) -> None:
         """The vehicle acknowledged offboard; only a heartbeat from now on proves it."""
@@ -99,6 +104,12 @@ class OffboardStream:
         """The vehicle did not say whether it went to offboard; it may have."""
         return self._end(Act.CLOSE_AND_HOLD, "the vehicle did not answer to offboard; it holds")
 
+    def interrupted(self, why: str) -> tuple[Act, str]:
+        """Nothing can be said of the time that has passed: what streamed ends."""
+        if self.state in {Stream.STARTING, Stream.FLYING}:
+            return self._end(Act.CLOSE_AND_HOLD, why)
+        return Act.NOTHING, ""
+
     def _starting(self, seen: Seen) -> tuple[Act, str]:
         if not self._asked:
             self._asked = seen.now - self._started_t >= LEAD_S
@@ -106,17 +117,12 @@ class OffboardStream:
         proven = self.accepted_t is not None and seen.mode_t > self.accepted_t
         if proven and seen.mode is FlightMode.OFFBOARD:
             self.state = Stream.FLYING
-        elif seen.now - self._started_t > START_TIMEOUT_S:
+        elif seen.now - self._started_t > ENGAGE_TIMEOUT_S:
             return self._end(Act.CLOSE_AND_HOLD, "the vehicle did not confirm offboard within 3 s; it holds")
         return Act.NOTHING, ""
 
-    def _flying(self, seen: Seen) -> tuple[Act, str]:
-        if seen.mode is not FlightMode.OFFBOARD:
-            # Someone else flies now: a pilot with a transmitter, another station, a failsafe. Never seize it back.
-            return self._end(
-                Act.CLOSE, f"the vehicle went to {seen.mode.name} by itself or by another; not fought"
-            )
-        return Act.NOTHING, ""
+    def _end_by(self, row: Row, c: Conditions) -> tuple[Act, str]:
+        return self._end(Act.CLOSE_AND_HOLD if row.action is Action.HOLD else Act.CLOSE, row.say(c))
 
     def _end(self, act: Act, why: str = "") -> tuple[Act, str]:
         self.state = Stream.ENDED

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 from pymavlink.dialects.v20 import minimal as mavlink
 
 from groundstation.vehicle.gate import Gate, origin, split_frames
+from groundstation.vehicle.signing import Signing
 from groundstation.vehicle.tlog import TlogWriter
 from groundstation.vehicle.transport import Transport
 
@@ -22,23 +23,37 @@ if TYPE_CHECKING:
     from mavsdk import Mavsdk
 
 _WINDOW_S = 5.0
+_HALF = 128
 
 
 class Losses:
-    """Counts the vehicle's lost frames by the gaps in its sequence numbers over the last seconds."""
+    """Counts the vehicle's lost frames by the gaps in its sequence numbers over the last seconds.
+
+    What is overtaken on its way is lost only until it comes; what comes twice counts once.
+    """
 
     def __init__(self) -> None:
         self._next: dict[tuple[int, int], int] = {}
+        self._missing: dict[tuple[int, int], set[int]] = {}
         self._marks: deque[tuple[float, int]] = deque()
         self._lost = 0
 
     def count(self, now: float, system: int, component: int, sequence: int) -> None:
         """Take note of a frame (sequence numbers run modulo 256)."""
         source = (system, component)
-        lost = (sequence - self._next.get(source, sequence)) % 256
-        # A jump of more than half the range is a repeated or late frame, not 200 lost ones.
-        lost = 0 if lost > 128 else lost
-        self._next[source] = (sequence + 1) % 256
+        next_ = self._next.setdefault(source, sequence)
+        missing = self._missing.setdefault(source, set())
+        lost = (sequence - next_) % 256
+        if lost <= _HALF:
+            # Half a round on, a number is the next round's.
+            missing.difference_update((sequence + _HALF + each) % 256 for each in range(lost + 1))
+            missing.update((next_ + each) % 256 for each in range(lost))
+            self._next[source] = (sequence + 1) % 256
+        elif sequence in missing:
+            missing.remove(sequence)
+            lost = -1
+        else:
+            return
         self._marks.append((now, lost))
         self._lost += lost
 
@@ -46,8 +61,9 @@ class Losses:
         """Return lost / (lost + received) over the window, 0 to 1."""
         while self._marks and self._marks[0][0] < now - _WINDOW_S:
             self._lost -= self._marks.popleft()[1]
-        received = len(self._marks)
-        return self._lost / (received + self._lost) if received else 0.0
+        # One that came late may have been lost before the window.
+        received, lost = len(self._marks), max(0, self._lost)
+        return lost / (received + lost) if received else 0.0
 
 
 class Pump:
@@ -58,18 +74,26 @@ class Pump:
         gate: Passes or keeps outgoing frames.
         tlog: Where frames are logged, or None.
         clock: Monotonic seconds.
+        signing: Signs what leaves and judges what comes; None where nothing is signed and everything heard.
 
     Attributes:
         heard_t: When the last frame came of a system that has introduced itself by a heartbeat; 0 before.
+        refused: How many frames were not heard, for their signature.
     """
 
     def __init__(
-        self, transport: Transport, gate: Gate, tlog: TlogWriter | None, clock: Callable[[], float]
+        self,
+        transport: Transport,
+        gate: Gate,
+        tlog: TlogWriter | None,
+        clock: Callable[[], float],
+        signing: Signing | None = None,
     ) -> None:
         self._transport = transport
         self._gate = gate
         self._tlog = tlog
         self._clock = clock
+        self._signing = signing
         self._parser = mavlink.MAVLink(None)
         self._parser.robust_parsing = True
         self._losses = Losses()
@@ -78,6 +102,7 @@ class Pump:
         self._running = True
         self._thread: threading.Thread | None = None
         self.heard_t = 0.0
+        self.refused = 0
 
     def start(self, mavsdk: Mavsdk) -> None:
         """Connect MAVSDK and begin."""
@@ -103,30 +128,40 @@ class Pump:
         if not self._running:
             return
         for frame in split_frames(data):
-            if self._gate.passes(frame):
-                self._transport.send(frame)
+            sent = frame if self._gate.passes(frame) else b""
+            if sent and self._signing:
+                sent = self._signing.sign(sent)
+            if sent:
+                self._transport.send(sent)
                 if self._tlog:
-                    self._tlog.write(frame)
+                    self._tlog.write(sent)
 
     def _receive_all(self, mavsdk: Mavsdk) -> None:
         while self._running:
             data = self._transport.receive()
-            if data and self._running:
-                mavsdk.pass_received_raw_bytes(data)
-                self._watch(data)
-
-    def _watch(self, data: bytes) -> None:
-        now = self._clock()
-        for message in self._parser.parse_buffer(data) or ():
-            frame = bytes(message.get_msgbuf())
-            sequence, system, component = origin(frame)
-            if message.get_type() == "HEARTBEAT":
-                self._known.add(system)
-            # Noise on a serial line can look like a frame, but hardly like one of a system that is known.
-            if system not in self._known:
+            if not data or not self._running:
                 continue
-            self.heard_t = now
-            with self._lock:
-                self._losses.count(now, system, component, sequence)
-            if self._tlog:
-                self._tlog.write(frame)
+            if self._signing is None:
+                mavsdk.pass_received_raw_bytes(data)
+            for message in self._parser.parse_buffer(data) or ():
+                frame = bytes(message.get_msgbuf())
+                if self._signing and not self._signing.trusts(frame):
+                    self.refused += message.get_type() != "BAD_DATA"
+                    continue
+                if self._signing:
+                    mavsdk.pass_received_raw_bytes(frame)
+                self._watch(frame, introduces=message.get_type() == "HEARTBEAT")
+
+    def _watch(self, frame: bytes, *, introduces: bool) -> None:
+        now = self._clock()
+        sequence, system, component = origin(frame)
+        if introduces:
+            self._known.add(system)
+        # Noise on a serial line can look like a frame, but hardly like one of a system that is known.
+        if system not in self._known:
+            return
+        self.heard_t = now
+        with self._lock:
+            self._losses.count(now, system, component, sequence)
+        if self._tlog:
+            self._tlog.write(frame)

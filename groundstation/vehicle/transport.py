@@ -9,15 +9,20 @@ import contextlib
 import re
 import socket
 import time
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal, Protocol
 
 from groundstation.errors import InputError
+from groundstation.messages import Severity
+from groundstation.vehicle import usb_port
 
 if TYPE_CHECKING:
     import serial
+    from serial.tools.list_ports_common import ListPortInfo
 
 Scheme = Literal["udpin", "udpout", "tcpout", "serial"]
+Tell = Callable[[Severity, str], None]
 
 _NETWORK = re.compile(r"^(udpin|udpout|tcpout)://([^:/\s]+):(\d{1,5})$")
 _SERIAL = re.compile(r"^serial://(/[^:\s]+|[A-Za-z]+\d+):(\d{3,8})$")
@@ -81,8 +86,12 @@ def parse_url(text: str) -> Url:
     return Url(scheme, found[2], number)
 
 
-def open_transport(url: Url) -> Transport:
+def open_transport(url: Url, tell: Tell = lambda _severity, _words: None) -> Transport:
     """Open the way to the vehicle.
+
+    Args:
+        url: Where it is.
+        tell: Is told of a way that is lost and of one that is found again.
 
     Raises:
         TransportError: With where, why and what to do.
@@ -92,8 +101,8 @@ def open_transport(url: Url) -> Transport:
     if url.scheme == "udpout":
         return UdpOut(url)
     if url.scheme == "tcpout":
-        return TcpOut(url)
-    return SerialPort(url)
+        return TcpOut(url, tell)
+    return SerialPort(url, tell)
 
 
 class UdpIn:
@@ -174,8 +183,10 @@ class UdpOut:
 class TcpOut:
     """Connects to a server, and again whenever the connection breaks."""
 
-    def __init__(self, url: Url) -> None:
+    def __init__(self, url: Url, tell: Tell) -> None:
         self._address = (url.place, url.number)
+        self._tell = tell
+        self._way = f"tcpout://{url.place}:{url.number}"
         self._socket: socket.socket | None = None
         self._retry_t = 0.0
         try:
@@ -198,7 +209,7 @@ class TcpOut:
         except OSError:
             data = b""
         if not data:
-            self.close()
+            self._lose()
         return data
 
     def send(self, data: bytes) -> None:
@@ -208,13 +219,19 @@ class TcpOut:
             try:
                 connection.sendall(data)
             except OSError:
-                self.close()
+                self._lose()
 
     def close(self) -> None:
         """See `Transport`."""
         connection, self._socket = self._socket, None
         if connection is not None:
             connection.close()
+
+    def _lose(self) -> None:
+        # Both threads may find out; it is told once.
+        if self._socket is not None:
+            self.close()
+            self._tell(Severity.ALARM, f"{self._way} has hung up; it is called again every second.")
 
     def _connect(self) -> socket.socket:
         connection = socket.create_connection(self._address, timeout=2.0)
@@ -230,17 +247,27 @@ class TcpOut:
             return None
         self._retry_t = now + _RECONNECT_S
         with contextlib.suppress(OSError):
-            return self._connect()
+            connection = self._connect()
+            self._tell(Severity.INFO, f"{self._way} answers again.")
+            return connection
         return None
 
 
 class SerialPort:
-    """A telemetry radio or a flight controller on a serial port, opened again when it comes back."""
+    """A telemetry radio or a flight controller on a serial port, opened again when it comes back, wherever that is.
 
-    def __init__(self, url: Url) -> None:
+    Args:
+        url: Its port and baud rate.
+        tell: Is told when it goes and comes.
+        ports: Lists the serial ports that are there.
+    """
+
+    def __init__(
+        self, url: Url, tell: Tell, ports: Callable[[], list[ListPortInfo]] = usb_port.present
+    ) -> None:
         import serial
 
-        self._url = url
+        self._url, self._tell, self._ports = url, tell, ports
         self._error = serial.SerialException
         self._full = serial.SerialTimeoutException
         self._open = serial.Serial
@@ -253,6 +280,7 @@ class SerialPort:
                 f"serial://{url.place}:{url.number}: cannot be opened ({error}); check the cable, the name "
                 "and that you are in the group that owns it (dialout)."
             ) from error
+        self._who = usb_port.identity(url.place, ports())
 
     def receive(self) -> bytes:
         """See `Transport`."""
@@ -262,7 +290,7 @@ class SerialPort:
         try:
             return port.read(max(1, port.in_waiting))
         except (self._error, OSError, TypeError):
-            self.close()
+            self._lose()
             return b""
 
     def send(self, data: bytes) -> None:
@@ -275,7 +303,7 @@ class SerialPort:
                 # The port cannot take more now: a radio slower than its traffic. The frame is lost, not the port.
                 return
             except (self._error, OSError, TypeError):
-                self.close()
+                self._lose()
 
     def close(self) -> None:
         """See `Transport`."""
@@ -284,14 +312,24 @@ class SerialPort:
             with contextlib.suppress(self._error, OSError):
                 port.close()
 
+    def _lose(self) -> None:
+        # Both threads may find out; it is told once.
+        if self._port is not None:
+            self.close()
+            self._tell(Severity.ALARM, f"Serial port {self._url.place} is gone; plug it in again.")
+
     def _reopen(self) -> serial.Serial | None:
         time.sleep(0.1)
         now = time.monotonic()
         if now < self._retry_t:
             return None
         self._retry_t = now + _RECONNECT_S
+        place = usb_port.find(self._url.place, self._who, self._ports())
         with contextlib.suppress(self._error, OSError):
-            self._port = self._open(self._url.place, self._url.number, timeout=0.1, write_timeout=_WRITE_S)
+            if place:
+                self._port = self._open(place, self._url.number, timeout=0.1, write_timeout=_WRITE_S)
+                moved = "" if place == self._url.place else f", as {place}"
+                self._tell(Severity.INFO, f"Serial port {self._url.place} is back{moved}.")
         return self._port
 
 

@@ -120,7 +120,7 @@ _PX4: dict[str, Spec] = {
 
 # The simulator's own. The channel per direction, UP toward the vehicle: delay and jitter, s; shares of frames
 # lost, doubled and reordered; bytes a second (0: no limit). A blackout of so many seconds from now, which goes back
-# to 0 by itself. The wind: where the air goes to, m/s, and the strength of its turbulence, m/s. And what happens once,
+# to 0 by itself. The wind: where the air goes to, m/s, and the strength of its turbulence, m/s. What happens once,
 # by `sim.momentary`: a gust with its peak, m/s, and how long it blows, s; so many seconds without GPS; a battery that
 # has only this share of its charge left.
 # None may close the channel for good: a ground station must be able to take it back. Bytes a second from 1 to

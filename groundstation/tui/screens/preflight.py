@@ -10,10 +10,11 @@ from textual.widget import Widget
 
 from groundstation.messages import Severity
 from groundstation.tui.buttons import button_map, held, unmapped
+from groundstation.tui.check import Check
 from groundstation.tui.checks import checks
 from groundstation.tui.frame import Frame
 from groundstation.tui.lines import Lines
-from groundstation.tui.rows import Row
+from groundstation.tui.rows import Row, wrapped
 from groundstation.tui.screens.page import Page
 from groundstation.tui.theme import Tone
 
@@ -22,7 +23,7 @@ _MARKS = {
     Severity.WARNING: ("▲", Tone.WARN),
     Severity.ALARM: ("■", Tone.FAULT),
 }
-_NAME = 20
+_NAME = 23
 # From here on the remedy stands beside the state.
 _WIDE = 110
 
@@ -43,18 +44,24 @@ def _rows(frame: Frame, width: int) -> list[Row]:
     found = checks(frame)
     rows: list[Row] = [_total([check.severity for check in found]), []]
     for check in found:
-        mark, tone = _MARKS[check.severity]
-        row: Row = [
-            (f"{mark} ", tone),
-            (check.name.ljust(_NAME), Tone.STRONG),
-            (f" {check.state}", Tone.TEXT),
-        ]
-        if check.remedy and width >= _WIDE:
-            row.append((f"  → {check.remedy}", Tone.WARN))
-        rows.append(row)
-        if check.remedy and width < _WIDE:
-            rows.append([(" " * (_NAME + 3), Tone.TEXT), (f"→ {check.remedy}", Tone.WARN)])
+        rows += _told(check, width)
     return [*rows, [], *_buttons(frame)]
+
+
+def _told(check: Check, width: int) -> Iterator[Row]:
+    """Yield a check's rows: on a wide screen one, else the remedy below the state, and none is cut."""
+    mark, tone = _MARKS[check.severity]
+    head: Row = [(f"{mark} ", tone), (check.name.ljust(_NAME), Tone.STRONG)]
+    if width >= _WIDE:
+        remedy: Row = [(f"  → {check.remedy}", Tone.WARN)] if check.remedy else []
+        yield [*head, (f" {check.state}", Tone.TEXT), *remedy]
+        return
+    blank: Row = [(" " * (_NAME + 2), Tone.TEXT)]
+    room = width - _NAME - 3
+    for number, line in enumerate(wrapped(check.state, room)):
+        yield [*(blank if number else head), (f" {line}", Tone.TEXT)]
+    for line in wrapped(f"→ {check.remedy}", room) if check.remedy else ():
+        yield [*blank, (f" {line}", Tone.WARN)]
 
 
 def _total(severities: list[Severity]) -> Row:

@@ -6,7 +6,6 @@ import math
 
 from groundstation.training.guide import Guide, Way
 from groundstation.training.mission import Mission as MissionFile
-from groundstation.training.score import score_of
 from groundstation.tui.directions import title, way_of, whereabouts
 from groundstation.tui.frame import Frame
 from groundstation.tui.notes import words
@@ -15,8 +14,8 @@ from groundstation.tui.theme import Tone
 from groundstation.tui.widgets.instrument import Instrument
 
 _LABEL = 12
-# What is only known once the target has been held.
-_AT_THE_END = frozenset({"precision", "time"})
+# What is only known later on.
+_AT_THE_END = {"precision": "comes when the target is held", "landing": "comes with the landing"}
 
 
 class Mission(Instrument):
@@ -38,7 +37,7 @@ class Mission(Instrument):
         rows = [_row("mission", (mission.title[: max(width - _LABEL - 2, 0)], Tone.TEXT))]
         rows += _next(frame, width)
         rows += _progress(frame, mission, width)
-        return [*rows, *_score(frame, mission, width)][:height]
+        return [*rows, *_score(frame, width)][:height]
 
 
 def _row(label: str, *parts: tuple[str, Tone]) -> Row:
@@ -114,18 +113,16 @@ def _progress(frame: Frame, mission: MissionFile, width: int) -> list[Row]:
     return [*rows, _row("obstacles", touched, *([near] if math.isfinite(progress.clearance) else []), *gates)]
 
 
-def _score(frame: Frame, mission: MissionFile, width: int) -> list[Row]:
+def _score(frame: Frame, width: int) -> list[Row]:
     """Return the score so far, and how much of each of its parts is reached."""
-    figures = frame.figures
-    score = score_of(mission, figures) if figures is not None else None
-    if score is None or figures is None:
+    score = frame.score
+    if score is None:
         return []
-    held = not math.isnan(figures.final_error)
     rows = [_row("score", (f"{score.points:.0f}", Tone.STRONG), (" of 100 points so far", Tone.MUTED))]
     for part in score.parts:
         head: Row = [(f"   {part.name:<{_LABEL - 2}}", Tone.MUTED)]
-        if part.name in _AT_THE_END and not held:
-            rows.append([*head, ("comes when the target is held", Tone.FAINT)])
+        if part.name in _AT_THE_END and math.isnan(part.value):
+            rows.append([*head, (_AT_THE_END[part.name], Tone.FAINT)])
             continue
         figure = f" {100.0 * part.share:3.0f} %"
         strip = gauge(part.share, 1.0, width - width_of(head) - len(figure) - 1, Tone.OK)

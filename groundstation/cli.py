@@ -15,6 +15,7 @@ from typing import NoReturn, cast
 
 from groundstation import __version__, fly_options
 from groundstation import excite_options as excite
+from groundstation import school_options as school
 from groundstation.devices import options as devices
 from groundstation.errors import InputError
 from groundstation.evaluation import options as evaluate
@@ -33,6 +34,7 @@ EXIT_BAD_INPUT = 2
 # The commands besides flying. Each is a module with its HELP, DESCRIPTION and EXAMPLES, `fill`, which adds its
 # options to a parser, and RUN, the function that does it, as "module:function".
 _COMMANDS: dict[str, ModuleType] = {
+    "school": school,
     "review": review,
     "report": report,
     "replay": replay,
@@ -49,6 +51,7 @@ _COMMANDS: dict[str, ModuleType] = {
 _EXAMPLES = """\
 examples:
   groundstation                                              choose vehicle, device and mission, then fly
+  groundstation school                                       learn to fly, step by step
   groundstation --sim                                        fly the simulated vehicle
   groundstation --sim --mission paper                        fly a mission by hand
   groundstation --sim --headless --mission paper --json      let the scripted hand fly it

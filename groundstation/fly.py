@@ -7,6 +7,7 @@ import contextlib
 import datetime
 import os
 import signal
+import sys
 from collections.abc import Generator
 from pathlib import Path
 from typing import NoReturn
@@ -25,6 +26,7 @@ from groundstation.terminal import has_screen, terminal_path
 from groundstation.training.mission import Mission, find_mission, load_mission
 from groundstation.training.par import par_in
 from groundstation.training.reference import load_reference
+from groundstation.tui.wish import Ending
 from groundstation.vehicle.signing import read_key
 from groundstation.vehicle.transport import parse_url
 from sim.scenario import VehicleChoice
@@ -39,22 +41,35 @@ def fly(asked: argparse.Namespace) -> int:
     Raises:
         InputError: Something asked for cannot be.
     """
-    _check(asked)
-    run = accompanied(plan(asked), asked)
-    note(asked)
-    with started(run, asked) as (bus, supervisor):
-        if asked.headless:
-            from groundstation.headless import fly_headless
+    while True:
+        _check(asked)
+        run = accompanied(plan(asked), asked)
+        note(asked)
+        with started(run, asked) as (bus, supervisor):
+            ending = _flown(run, asked, bus, supervisor)
+            if ending.wish is not None:
+                sys.stderr.write(f"{run.recording.name}: being closed; then {ending.wish.mission} begins.\n")
+        if ending.wish is None:
+            return ending.code
+        asked.mission, asked.pilot = ending.wish
 
-            operator = asked.operator or "average"
-            return fly_headless(run, bus, supervisor, as_json=asked.json, operator=operator, seed=asked.seed)
-        if asked.plain:
-            from groundstation.tui.plain import fly_plainly
 
-            return fly_plainly(run, bus, supervisor)
-        from groundstation.tui.running import fly_on_screen
+def _flown(run: Run, asked: argparse.Namespace, bus: Bus, supervisor: Supervisor) -> Ending:
+    """Fly a run whose processes run, in the way that was asked for."""
+    if asked.headless:
+        from groundstation.headless import fly_headless
 
-        return fly_on_screen(run, bus, supervisor)
+        operator = asked.operator or "average"
+        return Ending(
+            fly_headless(run, bus, supervisor, as_json=asked.json, operator=operator, seed=asked.seed)
+        )
+    if asked.plain:
+        from groundstation.tui.plain import fly_plainly
+
+        return Ending(fly_plainly(run, bus, supervisor))
+    from groundstation.tui.running import fly_on_screen
+
+    return fly_on_screen(run, bus, supervisor)
 
 
 @contextlib.contextmanager

@@ -65,7 +65,7 @@ def add_flight(parser: argparse.ArgumentParser) -> None:
     flight.add_argument(
         "--operator",
         choices=("novice", "average", "expert"),
-        help="with --headless: who flies, see docs/scoring.md (default: average)",
+        help="with --headless: who flies, see docs/operators.md (default: average)",
     )
     flight.add_argument(
         "--plain",

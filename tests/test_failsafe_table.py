@@ -300,6 +300,7 @@ def test_a_silent_vehicle_is_told_by_a_real_link(tmp_path: Path) -> None:
 
     from mavsdk import Configuration, Mavsdk
 
+    from groundstation.vehicle.asleep import Sleep
     from groundstation.vehicle.gate import Gate
     from groundstation.vehicle.link import Link
     from groundstation.vehicle.pump import Pump
@@ -314,7 +315,7 @@ def test_a_silent_vehicle_is_told_by_a_real_link(tmp_path: Path) -> None:
     pump = Pump(open_transport(Url("udpin", "127.0.0.1", 0)), gate, None, time.monotonic)
     mav = Mavsdk(Configuration.create_manual(255, 190, True))
     pump.start(mav)
-    link = Link(run, bus, mav, pump, gate, notes=queue.SimpleQueue())
+    link = Link(run, bus, mav, pump, gate, notes=queue.SimpleQueue(), sleep=Sleep())
     try:
         link.turn()
         assert list(events.drain()) == []

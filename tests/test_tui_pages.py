@@ -240,7 +240,7 @@ async def test_an_autopilot_that_is_not_known_is_red():
         scene.reader.shown.status.autopilot = 0
         await scene.press("f7")
         await scene.see()
-        assert "■ vehicle                system 1, component 1, unknown autopilot" in lines(scene)
+        assert "■ vehicle                 system 1, component 1, unknown autopilot" in lines(scene)
 
 
 async def test_a_recording_that_cannot_be_written_is_red_and_a_full_disk_is_cautioned_about(
@@ -259,7 +259,7 @@ async def test_a_recording_that_cannot_be_written_is_red_and_a_full_disk_is_caut
         assert "0.5 GB free: 25 min of flight" in lines(scene)
         Disk.free = 0.2e9
         await scene.see()
-        assert "■ recording              0.2 GB free: 10 min" in lines(scene)
+        assert "■ recording               0.2 GB free: 10 min" in lines(scene)
 
 
 class Disk:

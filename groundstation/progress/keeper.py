@@ -17,6 +17,7 @@ from groundstation.progress.store import Store
 from groundstation.run import Run
 from groundstation.training.attempts import Attempts
 from groundstation.training.measures import Track
+from groundstation.training.workload import Workload
 
 
 class Keeper:
@@ -37,7 +38,7 @@ class Keeper:
         self._seen = 0
         self._words: queue.SimpleQueue[str] = queue.SimpleQueue()
         self._threads: list[threading.Thread] = []
-        self.kept = 0
+        self.kept = self._told = 0
 
     def look(self) -> list[str]:
         """Keep what has landed since; return what there is to be said of it."""
@@ -52,6 +53,23 @@ class Keeper:
             words.append(self._words.get())
         return words
 
+    def fresh(self) -> bool:
+        """Say once of each flight that it is in the store."""
+        new = self.kept not in (0, self._told)
+        self._told = self.kept
+        return new
+
+    def keep_workload(self, workload: Workload) -> None:
+        """Keep how hard the last flight that landed felt."""
+        for thread in self._threads:
+            thread.join()
+        if self.kept:
+            try:
+                with Store(self._path) as store:
+                    store.set_workload(self.kept, workload)
+            except InputError as error:
+                self._words.put(str(error))
+
     def close(self) -> list[str]:
         """Wait until all is written; return what is left to be said."""
         words = self.look()
@@ -60,7 +78,7 @@ class Keeper:
         return [*words, *self.look()]
 
     def _start(self, flown: Flown, track: Track) -> None:
-        self.kept = 0
+        self.kept = self._told = 0
         thread = threading.Thread(target=self._keep, args=(flown, track), name="progress")
         self._threads.append(thread)
         thread.start()

@@ -44,6 +44,8 @@ def number(points: float | None) -> str:
 
 def hours(seconds: float) -> str:
     """Write time in the air."""
+    if seconds < 90:
+        return f"{seconds:.0f} s"
     return f"{seconds / 60:.0f} min" if seconds < 5400 else f"{seconds / 3600:.1f} h"
 
 

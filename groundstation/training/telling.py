@@ -32,4 +32,4 @@ def told(judgement: Judgement, par_from: str, start: float | None = None) -> Ite
         t = clock(moment.t - judgement.took_off_t)
         where = "" if start is None else f" (--at {moment.t - start:.1f})"
         name = "" if index else "points lost"
-        yield f"{name:<{NAME}} {-moment.lost:5.1f} at {t}{where}, {moment.part}: {moment.words}"
+        yield f"{name:<{NAME}} {f'−{moment.lost:.1f}':>5} at {t}{where}, {moment.part}: {moment.words}"

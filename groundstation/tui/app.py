@@ -21,14 +21,17 @@ from textual.screen import ModalScreen, Screen
 
 from groundstation.console import Snapshot
 from groundstation.messages import CommandKind, FlightMode, Severity
+from groundstation.progress.desk import Desk
+from groundstation.progress.keeper import Keeper
+from groundstation.progress.skills import Advice
 from groundstation.run import Run, start_of
 from groundstation.training.coach import LiveCoach
-from groundstation.training.director import Director
+from groundstation.training.director import Director, Stage
 from groundstation.training.follower import MissionFollower
 from groundstation.training.guide import Guide, guide_of
 from groundstation.training.score import Score, score_of
 from groundstation.training.workload import Workload
-from groundstation.tui.acts import ACTS, URGENT, Act, coupled, in_air
+from groundstation.tui.acts import ACTS, URGENT, Act, armed, coupled, in_air
 from groundstation.tui.alarms import Alarms
 from groundstation.tui.alerts import conditions
 from groundstation.tui.checks import red
@@ -52,6 +55,7 @@ from groundstation.tui.theme import THEME, THEMES, next_theme
 from groundstation.tui.track import History, Track
 from groundstation.tui.viewer import Viewer
 from groundstation.tui.widgets.stick import YAW, stays
+from groundstation.tui.wish import Wish
 
 _POLL_S = 0.1
 _LOOK_S = 0.5
@@ -90,8 +94,9 @@ class FlightApp(Commanding):
         stick: Takes the on-screen stick's deflection, or None where another device is in use.
         follower: Follows the mission, if there is one.
         coach: Tells the trainee what to do instead, if there is one.
-        instructing: Lets happen what an instructor would.
-        best: The pilot's best score in this mission before; None where there is none.
+        desk: Knows the pilots and the course; the one of the run's folder where none is given.
+        keeper: Keeps the flights that land, if they are anybody's.
+        instructing: Instructing | None = None,
         on_workload: Keeps what was answered after a flight.
         clock: Monotonic seconds, the bus's clock.
     """
@@ -110,8 +115,9 @@ class FlightApp(Commanding):
         *,
         follower: MissionFollower | None = None,
         coach: LiveCoach | None = None,
+        desk: Desk | None = None,
+        keeper: Keeper | None = None,
         instructing: Instructing | None = None,
-        best: Score | None = None,
         on_workload: Callable[[Workload], None] = lambda _: None,
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
@@ -129,8 +135,12 @@ class FlightApp(Commanding):
         self._next_poll = self._next_look = self._next_score = 0.0
         self._keepalive = Keepalive(self._send_stick, clock)
         self._follower, self._coach = follower, coach
+        self.desk, self._keeper = desk or Desk(run.recording.parent), keeper
+        self.best = self.desk.best(run.pilot, run.mission, run.par) if run.mission else None
+        self._on_workload = on_workload
+        self.advice: Advice | None = None
+        self.wish: Wish | None = None
         self._instructing = instructing or Instructing(None)
-        self.best, self._on_workload = best, on_workload
         self._score: Score | None = None
         self._flight = FlightScreen(self.hand if stick is not None else None)
         self._milestones, self._viewer = Milestones(), Viewer()
@@ -162,6 +172,7 @@ class FlightApp(Commanding):
         if self._follower is not None:
             self._follower.look(snapshot)
             self._judge(self._follower, snapshot.t)
+            self._keep()
         polled = snapshot.t >= self._next_poll
         if polled:
             self._next_poll = snapshot.t + _POLL_S
@@ -196,6 +207,15 @@ class FlightApp(Commanding):
             measurer = follower.measurer
             self._score = score_of(measurer.director.mission, measurer.measures(), self._flight_run.par)
 
+    def _keep(self) -> None:
+        """Have what has landed kept; once it is, look what comes next."""
+        if self._keeper is None:
+            return
+        for words in self._keeper.look():
+            self.notify(words, severity="warning", timeout=10.0, markup=False)
+        if self._keeper.fresh():
+            self.advice = self.desk.report(self.pilot).standing.next
+
     def _look_around(self, frame: Frame) -> None:
         """Show the page that is due, but never in place of what the operator looks at."""
         if failure := self._viewer.failure():
@@ -207,6 +227,33 @@ class FlightApp(Commanding):
     def _page(self) -> Page | None:
         """The page that stands over the flight, if one does."""
         return next((screen for screen in self.screen_stack if isinstance(screen, Page)), None)
+
+    @property
+    def pilot(self) -> str:
+        """Who flies."""
+        return self._flight_run.pilot
+
+    def action_next(self) -> None:
+        """Fly what the school recommends."""
+        if self.advice is None:
+            self.action_page("school")
+        else:
+            self.fly_next(Wish(self.advice.mission, self.pilot))
+
+    def fly_next(self, wish: Wish) -> None:
+        """Leave this run and have the next one begin with what is wished: on the ground, and simulated only."""
+        mission, director = self._flight_run.mission, self.director
+        if not self._flight_run.simulated:
+            words = "A real vehicle is flown as it was connected: leave with q, and choose the mission then."
+            self.notify(words, severity="warning", timeout=6.0)
+        elif armed(self._snapshot) or in_air(self._snapshot) or coupled(self._snapshot):
+            self.notify("Land and disarm first.", severity="warning", timeout=4.0)
+        elif mission and director and director.stage is Stage.WAITING and wish == (mission.name, self.pilot):
+            # It is this one that waits to be flown.
+            self.action_fly()
+        else:
+            self.wish = wish
+            self._leave()
 
     @property
     def director(self) -> Director | None:
@@ -350,7 +397,7 @@ class FlightApp(Commanding):
             yield SystemCommand(title, words, lambda preset=preset: self._choose_preset(preset))
         for page in PAGES:
             yield SystemCommand(
-                f"{page.label} ({page.key.upper()})",
+                f"{page.label} ({page.shown})",
                 page.explains,
                 lambda name=page.name: self.action_page(name),
             )

@@ -84,8 +84,8 @@ class Gate:
         self._authorised.clear()
 
     def passes(self, frame: bytes) -> bool:
-        """Say whether a MAVLink frame may leave."""
-        number = message_number(frame)
+        """Say whether a MAVLink frame may leave; with something behind it, it is none."""
+        number = message_number(frame) if frame and len(frame) == _length(frame, 0) else -1
         if number == SET_POSITION_TARGET_LOCAL_NED:
             passes = self._is_fresh(frame)
             self.sent += passes
@@ -128,10 +128,12 @@ class Gate:
 
 
 def message_number(frame: bytes) -> int:
-    """Return a frame's message id, or -1 where it is not one MAVLink frame and nothing else."""
-    if len(frame) < 8 or len(frame) != _length(frame, 0):
-        return -1
-    return frame[5] if frame[0] == _V1 else frame[7] | frame[8] << 8 | frame[9] << 16
+    """Return the message id of the frame that data begins with, or -1 where it is not MAVLink."""
+    if len(frame) >= 12 and frame[0] == _V2:
+        return frame[7] | frame[8] << 8 | frame[9] << 16
+    if len(frame) >= 8 and frame[0] == _V1:
+        return frame[5]
+    return -1
 
 
 def payload_of(frame: bytes) -> bytes:

@@ -57,7 +57,7 @@ class Identity:
         self._left, self._next = _ASKED, 0.0
         self.firmware = ""
         self.component = 0
-        self._direct.subscribe_message(_NAME, lambda message, _: self._heard.append(message))
+        self._direct.subscribe_message(_NAME, self._on_message)
 
     def turn(self) -> None:
         """Take what came, and ask again when it is time."""
@@ -81,6 +81,9 @@ class Identity:
         # A question that cannot be sent is lost like any other.
         with contextlib.suppress(MavlinkDirectError):
             self._direct.send_message(MavlinkMessage("COMMAND_LONG", 0, 0, self._system_id, 1, fields))
+
+    def _on_message(self, message: MavlinkMessage, _: object) -> None:
+        self._heard.append(message)
 
     def _take(self, message: MavlinkMessage) -> None:
         try:

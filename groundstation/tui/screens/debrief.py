@@ -11,6 +11,7 @@ from textual.binding import Binding, BindingType
 from textual.containers import Container
 from textual.widget import Widget
 
+from groundstation.progress.skills import Advice
 from groundstation.training.director import Director, Stage
 from groundstation.training.score import NO_PAR, Part, Score, measure
 from groundstation.training.story import Moment, clock, worth_telling
@@ -39,11 +40,13 @@ class Debrief(Page):
         ("Enter", "Look at it", "screen.look"),
         ("v", "Viewer", "app.review"),
         ("w", "How hard?", "screen.workload"),
+        ("n", "Next", "app.next"),
     )
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("v", "app.review", "View", show=False),
         Binding("enter", "look", "Look at the moment in the viewer", show=False),
         Binding("w", "workload", "How hard was it?", show=False),
+        Binding("n", "app.next", "Next exercise", show=False),
     ]
 
     def __init__(self) -> None:
@@ -82,7 +85,8 @@ class Debrief(Page):
         if director.stage is Stage.WAITING:
             return [_line("mission", f"{director.mission.name}: not flown yet"), *_kept(frame)]
         score = frame.judgement.score if director.stage is Stage.DONE and frame.judgement else frame.score
-        rows = [*_result(frame, director), *_score(frame, score, self.flight.best, width)]
+        rows = [*_result(frame, director), *_next(self.flight.advice)]
+        rows += _score(frame, score, self.flight.best, width)
         return [*rows, [], *_figures(director), [], *_kept(frame)]
 
     def _moments(self, frame: Frame, width: int) -> list[Row]:
@@ -112,6 +116,11 @@ def _result(frame: Frame, director: Director) -> Iterator[Row]:
         yield _line("result", "✓ passed", Tone.OK)
     for index, words in enumerate(missing):
         yield _line("" if index else "result", f"▲ {words}", Tone.WARN)
+
+
+def _next(advice: Advice | None) -> Iterator[Row]:
+    if advice is not None:
+        yield [*_line("next (n)", advice.mission, Tone.KEY), (f"  {advice.why}", Tone.TEXT)]
 
 
 def _score(frame: Frame, score: Score | None, best: Score | None, width: int) -> Iterator[Row]:

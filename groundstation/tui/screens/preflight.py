@@ -23,7 +23,7 @@ _MARKS = {
     Severity.WARNING: ("▲", Tone.WARN),
     Severity.ALARM: ("■", Tone.FAULT),
 }
-_NAME = 22
+_NAME = 23
 # From here on the remedy stands beside the state.
 _WIDE = 110
 

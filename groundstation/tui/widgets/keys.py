@@ -80,7 +80,7 @@ def _acts(frame: Frame) -> Iterator[Item]:
             continue
         possible = not frame.hindrances[act.name]
         yield _act(act.key, act.label, possible=possible), f"app.act('{act.name}')"
-    pages = ((page.key.upper(), page.label, f"app.page('{page.name}')") for page in PAGES)
+    pages = ((page.shown, page.label, f"app.page('{page.name}')") for page in PAGES)
     for key, label, action in (*_OTHERS, *pages, *_LOOKS):
         yield _act(key, label, possible=True), action
 

@@ -6,7 +6,7 @@ export UV_PYTHON_DOWNLOADS := never
 export UV_PROJECT_ENVIRONMENT := .venv
 unexport VIRTUAL_ENV
 
-.PHONY: help fly test coverage check format bench docs-pictures clean
+.PHONY: help fly test coverage check audit format bench docs-pictures clean
 help: ## list the targets
 	@grep -E '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## (.*)/  make \1\t\2/' | expand -t 22
 
@@ -33,6 +33,9 @@ check: .venv/.synced ## lint, format, types, import contracts
 	@$(BIN)/ruff format --check
 	@$(BIN)/basedpyright
 	@$(BIN)/lint-imports
+
+audit: .venv/.synced ## ask whether a dependency has a known vulnerability
+	@$(BIN)/python .ci/audit.py
 
 format: .venv/.synced ## put the code in order
 	@$(BIN)/ruff check --fix

@@ -33,6 +33,7 @@ BENCHES = {
     "reconnect": "a thousand times connected and cut off: what memory and descriptors the link keeps",
     "report": "report on a flight of ten minutes, and loading it",
     "identify": "how exactly χ comes back out of noisy flights of every preset",
+    "school": "every mission flown by simulated operators: who passes, and in which order",
     "shield": "full-stick adversaries through obstacle fields, with and without the guard",
 }
 

@@ -15,12 +15,14 @@ from typing import NoReturn, cast
 
 from groundstation import __version__, fly_options
 from groundstation import excite_options as excite
+from groundstation import school_options as school
 from groundstation.devices import options as devices
 from groundstation.errors import InputError
 from groundstation.evaluation import options as evaluate
 from groundstation.export import options as export
 from groundstation.identification import options as identify
 from groundstation.instruct import options as instruct
+from groundstation.progress import options as progress
 from groundstation.replay import options as replay
 from groundstation.report import options as report
 from groundstation.review import options as review
@@ -32,6 +34,7 @@ EXIT_BAD_INPUT = 2
 # The commands besides flying. Each is a module with its HELP, DESCRIPTION and EXAMPLES, `fill`, which adds its
 # options to a parser, and RUN, the function that does it, as "module:function".
 _COMMANDS: dict[str, ModuleType] = {
+    "school": school,
     "review": review,
     "report": report,
     "replay": replay,
@@ -41,12 +44,14 @@ _COMMANDS: dict[str, ModuleType] = {
     "evaluate": evaluate,
     "missions": missions,
     "instruct": instruct,
+    "progress": progress,
     "devices": devices,
 }
 
 _EXAMPLES = """\
 examples:
   groundstation                                              choose vehicle, device and mission, then fly
+  groundstation school                                       learn to fly, step by step
   groundstation --sim                                        fly the simulated vehicle
   groundstation --sim --mission paper                        fly a mission by hand
   groundstation --sim --headless --mission paper --json      let the scripted hand fly it
@@ -59,6 +64,7 @@ examples:
   groundstation evaluate --delay 0,0.1,0.3                   compare controllers over hundreds of virtual flights
   groundstation missions list                                what there is to fly
   groundstation instruct                                     wind, delay and failures while a trainee flies
+  groundstation progress                                     how you come along, and what to fly next
 
 exit codes: 0 done, or the mission's criteria hold; 1 they do not, or a process died; 2 bad input
 """

@@ -21,6 +21,7 @@ Gains4 = tuple[Gain, Gain, Gain, Gain]
 Gains3 = tuple[Gain, Gain, Gain]
 Limits4 = tuple[Limit, Limit, Limit, Limit]
 Limits3 = tuple[Limit, Limit, Limit]
+Share = Annotated[float, Meta(ge=0, le=1)]
 Button = Annotated[int, Meta(ge=-1, le=31)]
 
 CONFIG_NAME = "groundstation.toml"
@@ -132,6 +133,9 @@ class Cues(Struct, frozen=True, forbid_unknown_fields=True):
         mismatch: Force a m/s between the velocity asked for and the one flown, N·s/m.
         guard: k of k (u_safe − u_cmd), N·s/m.
         part_limit: Largest norm of any one cue, N.
+        guidance: Pull towards the mission's way, N a metre further from it than `tube`; see `[training]`.
+        tube: So far from the way nothing pulls, m.
+        guidance_limit: What guidance takes of the device's force at most, as a share.
     """
 
     environment: Gain = 5.0
@@ -139,6 +143,9 @@ class Cues(Struct, frozen=True, forbid_unknown_fields=True):
     mismatch: Gain = 1.0
     guard: Gain = 2.5
     part_limit: Limit = 6.0
+    guidance: Gain = 6.0
+    tube: Limit = 0.15
+    guidance_limit: Annotated[float, Meta(gt=0, le=0.5)] = 0.3
 
 
 class Shield(Struct, frozen=True, forbid_unknown_fields=True):
@@ -221,6 +228,16 @@ class Limits(Struct, frozen=True, forbid_unknown_fields=True):
     force_ramp_s: Limit = 0.1
 
 
+class Training(Struct, frozen=True, forbid_unknown_fields=True):
+    """What helps who learns.
+
+    Attributes:
+        guidance: How strongly the hand is guided to the mission's way, 0 to 1; *auto* fades as skill grows.
+    """
+
+    guidance: Literal["auto"] | Share = "auto"
+
+
 class Safety(Struct, frozen=True, forbid_unknown_fields=True):
     """When to stop trusting.
 
@@ -278,6 +295,7 @@ class Settings(Struct, frozen=True, forbid_unknown_fields=True):
     safety: Safety = Safety()
     rates: Rates = Rates()
     recording: Recording = Recording()
+    training: Training = Training()
     devices: dict[str, dict[str, Any]] = {}
 
 

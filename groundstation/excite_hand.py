@@ -35,6 +35,7 @@ class ExcitingHand:
 
     Attributes:
         furthest: How far it came, m.
+        hesitates_s: Infinite: an excitation that is broken off is no good.
     """
 
     def __init__(
@@ -56,6 +57,7 @@ class ExcitingHand:
         self._start: Vector4 = (0.0, 0.0, 0.0, 0.0)
         self._away = 0.0
         self.furthest = 0.0
+        self.hesitates_s = math.inf
         self.patience_s = excitation.duration + _SETTLE_S + _GRACE_S
 
     def move(self, view: Snapshot, *, flying: bool) -> None:

@@ -5,9 +5,9 @@ from __future__ import annotations
 import argparse
 import contextlib
 import datetime
-import getpass
 import os
 import signal
+import sys
 from collections.abc import Generator
 from pathlib import Path
 from typing import NoReturn
@@ -18,11 +18,15 @@ from groundstation.bus import Bus
 from groundstation.config import Settings, check_flown_by_rate, load_settings, usual_file
 from groundstation.connecting import note
 from groundstation.errors import InputError
+from groundstation.login import login_name
 from groundstation.processes import Supervisor, free_port, running
 from groundstation.run import Run
 from groundstation.run_folder import new_run_id, run_folder, sweep_dead_runs
 from groundstation.terminal import has_screen, terminal_path
 from groundstation.training.mission import Mission, find_mission, load_mission
+from groundstation.training.par import par_in
+from groundstation.training.reference import load_reference
+from groundstation.tui.wish import Ending
 from groundstation.vehicle.signing import read_key
 from groundstation.vehicle.transport import parse_url
 from sim.scenario import VehicleChoice
@@ -37,21 +41,35 @@ def fly(asked: argparse.Namespace) -> int:
     Raises:
         InputError: Something asked for cannot be.
     """
-    _check(asked)
-    run = plan(asked)
-    note(asked)
-    with started(run, asked) as (bus, supervisor):
-        if asked.headless:
-            from groundstation.headless import fly_headless
+    while True:
+        _check(asked)
+        run = accompanied(plan(asked), asked)
+        note(asked)
+        with started(run, asked) as (bus, supervisor):
+            ending = _flown(run, asked, bus, supervisor)
+            if ending.wish is not None:
+                sys.stderr.write(f"{run.recording.name}: being closed; then {ending.wish.mission} begins.\n")
+        if ending.wish is None:
+            return ending.code
+        asked.mission, asked.pilot = ending.wish
 
-            return fly_headless(run, bus, supervisor, as_json=asked.json, seed=asked.seed)
-        if asked.plain:
-            from groundstation.tui.plain import fly_plainly
 
-            return fly_plainly(run, bus, supervisor)
-        from groundstation.tui.running import fly_on_screen
+def _flown(run: Run, asked: argparse.Namespace, bus: Bus, supervisor: Supervisor) -> Ending:
+    """Fly a run whose processes run, in the way that was asked for."""
+    if asked.headless:
+        from groundstation.headless import fly_headless
 
-        return fly_on_screen(run, bus, supervisor)
+        operator = asked.operator or "average"
+        return Ending(
+            fly_headless(run, bus, supervisor, as_json=asked.json, operator=operator, seed=asked.seed)
+        )
+    if asked.plain:
+        from groundstation.tui.plain import fly_plainly
+
+        return Ending(fly_plainly(run, bus, supervisor))
+    from groundstation.tui.running import fly_on_screen
+
+    return fly_on_screen(run, bus, supervisor)
 
 
 @contextlib.contextmanager
@@ -90,6 +108,7 @@ def plan(asked: argparse.Namespace) -> Run:
     now = datetime.datetime.now().astimezone()
     run_id = new_run_id()
     device = _device(asked, run_id)
+    par, par_from = par_in(load_reference(mission, path) if mission and path else None, asked.seed)
     if asked.device:
         _check_device(device, settings)
     return Run(
@@ -103,7 +122,7 @@ def plan(asked: argparse.Namespace) -> Run:
         log=str(log_stem(asked.logs, now, mission.name if mission else "flight")),
         viewer_url=_viewer(asked),
         controller=asked.controller,
-        pilot=_pilot(asked.pilot),
+        pilot=_pilot(asked),
         seed=asked.seed,
         terminal="" if asked.headless or asked.plain else terminal_path(),
         started=now.isoformat(timespec="milliseconds"),
@@ -111,7 +130,32 @@ def plan(asked: argparse.Namespace) -> Run:
         if asked.config or usual_file()
         else "",
         signing_key=str(asked.signing_key.resolve()) if asked.signing_key else "",
+        par=par,
+        par_from=par_from,
     )
+
+
+def accompanied(run: Run, asked: argparse.Namespace) -> Run:
+    """Return a run with the ghost that is followed, and with guidance as strong as the pilot needs it.
+
+    By itself it guides only a hand that trains on the simulated vehicle, and a scripted hand needs neither.
+
+    Raises:
+        InputError: What the pilot has flown cannot be read.
+    """
+    if run.mission is None:
+        return run
+    from groundstation.progress.company import flown_by, ghost_of, guidance_of
+    from groundstation.training.curriculum import lessons
+
+    flights, best = flown_by(run.pilot, run.mission, asked.logs)
+    wanted = run.settings.training.guidance if asked.guidance is None else asked.guidance
+    if wanted == "auto":
+        trains = run.simulated and not asked.headless
+        wanted = guidance_of(run.mission, flights, [each.mission for each in lessons()]) if trains else 0.0
+    asked_ghost = "off" if asked.headless and not asked.ghost else asked.ghost
+    ghost = ghost_of(asked_ghost, run.mission, Path(run.mission_path), best)
+    return msgspec.structs.replace(run, ghost=ghost, guidance=wanted)
 
 
 def _check(asked: argparse.Namespace) -> None:
@@ -122,6 +166,8 @@ def _check(asked: argparse.Namespace) -> None:
         raise InputError(
             "--headless flies with the scripted hand; leave --device out, or give it a double: emulated:falcon."
         )
+    if asked.operator and not asked.headless:
+        raise InputError("--operator says who flies a --headless flight; add --headless.")
     if asked.json and not asked.headless:
         raise InputError("--json is the summary of a --headless flight; add --headless.")
     if asked.headless and asked.connect and not asked.confirm_real:
@@ -234,14 +280,11 @@ def _device(asked: argparse.Namespace, run_id: str) -> str:
     return asked.device
 
 
-def _pilot(named: str | None) -> str:
-    """Return who flies: as named, else who is logged in, where the system knows."""
-    if named is not None:
-        return named.strip()
-    try:
-        return getpass.getuser()
-    except (KeyError, OSError):
-        return ""
+def _pilot(asked: argparse.Namespace) -> str:
+    """Return who flies: as named, else who is logged in; the scripted hand is nobody unless it is given a name."""
+    if asked.pilot is not None:
+        return asked.pilot.strip()
+    return "" if asked.headless else login_name()
 
 
 def log_stem(folder: Path, now: datetime.datetime, name: str) -> Path:

@@ -48,7 +48,24 @@ def add_flight(parser: argparse.ArgumentParser) -> None:
         help="your own controller; see docs/control.md (default: the paper's)",
     )
     flight.add_argument(
+        "--ghost",
+        choices=("best", "reference", "off"),
+        default="",
+        help="whose flight to fly beside (default: your best, else the reference operator's)",
+    )
+    flight.add_argument(
+        "--guidance",
+        type=share,
+        metavar="SHARE",
+        help="how strongly the hand is guided to the mission's way, 0 to 1 (default: fades as you learn)",
+    )
+    flight.add_argument(
         "--headless", action="store_true", help="no screen: the scripted hand flies the mission"
+    )
+    flight.add_argument(
+        "--operator",
+        choices=("novice", "average", "expert"),
+        help="with --headless: who flies, see docs/operators.md (default: average)",
     )
     flight.add_argument(
         "--plain",
@@ -88,10 +105,27 @@ def add_recording(parser: argparse.ArgumentParser) -> None:
     """Add settings, and where the recording goes."""
     general = parser.add_argument_group("settings and recording")
     general.add_argument("--config", type=Path, metavar="FILE", help="settings (default: groundstation.toml)")
-    general.add_argument("--pilot", metavar="NAME", help="who flies (default: who is logged in)")
+    general.add_argument(
+        "--pilot", metavar="NAME", help="who flies (default: who is logged in; --headless: nobody)"
+    )
     general.add_argument("--logs", type=Path, default=Path("logs"), metavar="DIR", help="recordings go here")
     live = general.add_mutually_exclusive_group()
     live.add_argument("--rerun", action="store_true", help="show the flight live in the Rerun viewer")
     live.add_argument(
         "--viewer", metavar="HOST:PORT", help="show it in a viewer that runs already, here or elsewhere"
     )
+
+
+def share(text: str) -> float:
+    """Read a number from 0 to 1.
+
+    Raises:
+        argparse.ArgumentTypeError: It is none.
+    """
+    try:
+        value = float(text)
+    except ValueError:
+        value = -1.0
+    if not 0.0 <= value <= 1.0:
+        raise argparse.ArgumentTypeError(f"{text}: give a number from 0 to 1")
+    return value

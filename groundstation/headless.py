@@ -1,38 +1,37 @@
 """A flight without a screen: a hand of the program's own flies through the very processes a person would.
 
-Whose hand it is, the flight does not know. A mission's is a simulated operator's (`sim.operator`): they look at the
-vehicle and decide where it should go; what they want of it is turned back through the rate mapping into where the
-hand should be, and the arm (`drivers.scripted`) takes it there.
+Whose hand it is, the flight does not know. A mission's is a simulated operator's (`groundstation.headless_hand`):
+they look at the vehicle and decide where it should go; what they want of it is turned back through the rate mapping
+into where the hand should be, and the arm (`drivers.scripted`) takes it there.
 """
 
 from __future__ import annotations
 
+import math
 import sys
 import time
-from collections.abc import Callable
 from enum import Enum
 from typing import Protocol
 
 from drivers.stick import StickSender
-from groundstation import config
 from groundstation.bus import Bus
 from groundstation.console import Console, Snapshot
 from groundstation.errors import InputError
-from groundstation.messages import CommandAnswer, CommandKind, Health, Phase
-from groundstation.pilot.mapping import RateMapping
+from groundstation.headless_hand import OperatorHand
+from groundstation.messages import CommandAnswer, CommandKind, FlightMode, Health, Phase
 from groundstation.processes import Supervisor
+from groundstation.progress.keeper import Keeper
 from groundstation.run import Run
 from groundstation.training.director import Director, Stage
 from groundstation.training.follower import MissionFollower
 from groundstation.training.mission import Mission
-from groundstation.training.summary import Narrator, figures_of, summarise
-from sim.operator import Operator
+from groundstation.training.summary import Narrator, summarise
 
 TURN_S = 0.02
 _STEP_S = 20.0
 _RETRY_S = 1.0
-# Beyond the mission's own limit the flight is given up and landed, s.
-_GRACE_S = 15.0
+# A link or a handle that a mission takes away is back after a minute, and then the vehicle must be seen to hold, s.
+_OUTAGE_S = 80.0
 
 
 class Step(Enum):
@@ -43,16 +42,19 @@ class Step(Enum):
     TAKEOFF = "taking off"
     ENGAGE = "engaging"
     FLY = "flying"
+    HOLD = "holding"
     DISENGAGE = "letting go"
     LAND = "landing"
     DONE = "done"
 
 
-_ORDER = tuple(Step)
+# Nobody flies into HOLD: it is where the vehicle waits until a hand that was uncoupled takes it back.
+_ORDER = tuple(step for step in Step if step is not Step.HOLD)
 _COMMANDS = {
     Step.ARM: CommandKind.ARM,
     Step.TAKEOFF: CommandKind.TAKEOFF,
     Step.ENGAGE: CommandKind.ENGAGE,
+    Step.HOLD: CommandKind.HOLD,
     Step.DISENGAGE: CommandKind.DISENGAGE,
     Step.LAND: CommandKind.LAND,
 }
@@ -64,6 +66,7 @@ _WAY_DOWN = {
     Step.TAKEOFF: Step.LAND,
     Step.ENGAGE: Step.LAND,
     Step.FLY: Step.DISENGAGE,
+    Step.HOLD: Step.LAND,
     Step.DISENGAGE: Step.LAND,
 }
 
@@ -74,6 +77,11 @@ class Hand(Protocol):
     @property
     def patience_s(self) -> float:
         """Return how long it may take, s."""
+        ...
+
+    @property
+    def hesitates_s(self) -> float:
+        """Return how long after it was uncoupled it takes the vehicle back, s; infinite: it never does."""
         ...
 
     def move(self, view: Snapshot, *, flying: bool) -> None:
@@ -123,8 +131,10 @@ class HeadlessFlight:
         self._note_refusals(view.answers)
         self._hand.move(view, flying=self.step is Step.FLY)
         if self._done(view):
-            self.step = _ORDER[_ORDER.index(self.step) + 1]
-            self._since, self._next_try, self._refusal = view.t, 0.0, ""
+            self._go_on(view, Step.ENGAGE if self.step is Step.HOLD else _ORDER[_ORDER.index(self.step) + 1])
+        elif self.step is Step.FLY and not self.failure and self._uncoupled(view):
+            self._go_on(view, Step.HOLD)
+            self._next_try = view.t + self._hand.hesitates_s
         elif view.t - self._since > self._patience():
             self._give_up(view)
         elif self.step in _COMMANDS and view.t >= self._next_try:
@@ -163,6 +173,8 @@ class HeadlessFlight:
             return pilot is not None and pilot.phase == Phase.ENGAGED
         if self.step is Step.FLY:
             return self._flown(view)
+        if self.step is Step.HOLD:
+            return status.mode == FlightMode.HOLD and view.t >= self._next_try
         if self.step is Step.DISENGAGE:
             return pilot is not None and pilot.phase == Phase.DISENGAGED
         # The director sees the landing with the next position, which may be later than the status.
@@ -171,13 +183,22 @@ class HeadlessFlight:
     def _flown(self, view: Snapshot) -> bool:
         if self._hand.finished(view):
             return True
-        if view.pilot is not None and view.pilot.phase == Phase.DISENGAGED:
+        if view.pilot and self._uncoupled(view) and math.isinf(self._hand.hesitates_s):
             self.failure = f"the hand was uncoupled: {view.pilot.reason.decode(errors='replace')}"
         else:
             self.failure = self._hand.fault(view)
         return bool(self.failure)
 
+    def _uncoupled(self, view: Snapshot) -> bool:
+        return view.pilot is not None and view.pilot.phase == Phase.DISENGAGED
+
+    def _go_on(self, view: Snapshot, step: Step) -> None:
+        self.step = step
+        self._since, self._next_try, self._refusal = view.t, 0.0, ""
+
     def _patience(self) -> float:
+        if self.step is Step.HOLD:
+            return _OUTAGE_S + self._hand.hesitates_s
         return self._hand.patience_s if self.step is Step.FLY else _STEP_S + 10.0
 
     def _give_up(self, view: Snapshot) -> None:
@@ -205,75 +226,23 @@ def _missing(view: Snapshot) -> str:
     return "the servo has not started"
 
 
-class OperatorHand:
-    """The simulated operator's head and arm: from what is seen to where the handle should be.
-
-    Args:
-        director: Follows the mission, which gives the route and the target.
-        mapping: The mapping the pilot flies with.
-        sender: Takes the wish to the scripted hand.
-        seed: Of the operator's noise.
-        clock: Monotonic seconds.
-    """
-
-    def __init__(
-        self,
-        director: Director,
-        mapping: config.Mapping,
-        sender: StickSender,
-        seed: int,
-        clock: Callable[[], float],
-    ) -> None:
-        mission = director.mission
-        self._director = director
-        self.patience_s = mission.criteria.time_limit_s + _GRACE_S
-        self._operator = Operator(mission.way[:-1], mission.way[-1], seed=seed) if mission.way else None
-        self._settings = mapping
-        self._mapping: RateMapping | None = None
-        self._workspace = 0.0
-        self._sender = sender
-        self._clock = clock
-
-    def move(self, view: Snapshot, *, flying: bool) -> None:
-        """Hold the handle where the operator wants it; at the centre while there is nothing to fly."""
-        displacement = ((0.0, 0.0, 0.0), 0.0)
-        state = view.vehicle
-        device = view.device
-        if device and device.workspace != self._workspace:
-            self._workspace = device.workspace
-            self._mapping = RateMapping(self._settings, device.workspace)
-        if flying and self._operator and self._mapping and state and state.valid:
-            x, y, z, yaw = state.position
-            vx, vy, vz, _ = state.velocity
-            wish = self._operator.decide(view.t, (x, y, z, yaw), (vx, vy, vz))
-            displacement = self._mapping.displacement_for(wish, yaw)
-        position, twist = displacement
-        self._sender.send(position, twist, 0, self._clock())
-
-    def finished(self, view: Snapshot) -> bool:  # noqa: ARG002
-        """Say whether the target has been held."""
-        return self._director.at_the_end
-
-    def fault(self, view: Snapshot) -> str:  # noqa: ARG002
-        """Return "": the mission's own limits end it."""
-        return ""
-
-    def told(self, view: Snapshot) -> str:
-        """Return the mission's figures."""
-        return figures_of(self._director, view)
-
-
-def fly_headless(run: Run, bus: Bus, supervisor: Supervisor, *, as_json: bool, seed: int) -> int:
+def fly_headless(
+    run: Run, bus: Bus, supervisor: Supervisor, *, as_json: bool, operator: str, seed: int
+) -> int:
     """Fly the run's mission, tell how it goes on stderr and how it went on stdout; return the exit code."""
     mission = run.mission
     if mission is None:
         raise InputError("--headless needs a --mission to fly.")
     outing = Outing(run, mission, bus, supervisor)
-    hand = OperatorHand(outing.director, run.settings.mapping, outing.sender, seed, time.monotonic)
+    hand = OperatorHand(
+        outing.director, run.settings, outing.sender, time.monotonic, operator=operator, seed=seed
+    )
     flight = outing.flight(hand)
     view = outing.fly(flight, hand)
     supervisor.stop()
     outing.follower.finish()
+    for words in Keeper(run, outing.follower.attempts).close():
+        sys.stderr.write(f"groundstation: {words}\n")
     return summarise(run, outing.follower.measurer, view.servo, flight.failure, as_json=as_json)
 
 
@@ -295,7 +264,7 @@ class Outing:
     def __init__(self, run: Run, mission: Mission, bus: Bus, supervisor: Supervisor) -> None:
         self._bus, self._supervisor = bus, supervisor
         self._console = Console(bus, "headless")
-        self.follower = MissionFollower(mission, bus)
+        self.follower = MissionFollower(mission, bus, run.par)
         self.director = self.follower.director
         self.sender = StickSender(str(run.hand))
 

@@ -25,6 +25,7 @@ REASON_TEXT = 160
 NAME_TEXT = 49
 FIRMWARE_TEXT = 24
 PARAMETER_TEXT = 17
+PART_TEXT = 16
 HAPPENING_TEXT = 200
 # Sectors of the ring in `Ranges`, as many as MAVLink's OBSTACLE_DISTANCE has room for.
 RING_SECTORS = 72
@@ -129,6 +130,7 @@ class Cue(IntFlag):
     MISMATCH = 4
     GUARD = 8
     DAMPING = 16
+    GUIDANCE = 32
 
 
 class Severity(IntEnum):
@@ -247,7 +249,7 @@ class PilotState(Record):
         v_safe: The same after the guard.
         v_c: That within the limits: the velocity that the vehicle is meant to have. `Setpoint` makes it have it.
         force: As equation (5) gives it, world, N; `Handle` has what is rendered, damped, ramped and limited.
-        environment, mismatch, guard: The other cues as they are weighted into the force, world, N.
+        environment, mismatch, guard, guidance: The other cues as they are weighted into the force, world, N.
         damping: Likewise against the handle's velocity, handle frame, N.
         state_age: Age of the vehicle's state, s; infinite before the first.
         delay: Round trip that the controller reckons with, s.
@@ -281,6 +283,7 @@ class PilotState(Record):
     mismatch: ctypes.Array[_F64]
     guard: ctypes.Array[_F64]
     damping: ctypes.Array[_F64]
+    guidance: ctypes.Array[_F64]
     predicted: ctypes.Array[_F64]
     predicted_velocity: ctypes.Array[_F64]
     stop: ctypes.Array[_F64]
@@ -319,6 +322,7 @@ class PilotState(Record):
         ("mismatch", _F64 * 3),
         ("guard", _F64 * 3),
         ("damping", _F64 * 3),
+        ("guidance", _F64 * 3),
         ("predicted", _F64 * 4),
         ("predicted_velocity", _F64 * 3),
         ("stop", _F64 * 3),
@@ -683,6 +687,32 @@ class MissionProgress(Record):
     )
 
 
+class PointsLost(Record):
+    """A moment in which a flight lost points, told when it has landed (`t` is that of the moment).
+
+    Attributes:
+        until: When it ended, s.
+        points: Of the score's 100.
+        position: Where the vehicle was, world, m.
+        part: Of the score.
+        text: What happened.
+    """
+
+    until: float
+    points: float
+    position: ctypes.Array[_F64]
+    part: bytes
+    text: bytes
+    _fields_ = (
+        ("t", _F64),
+        ("until", _F64),
+        ("points", _F64),
+        ("position", _F64 * 3),
+        ("part", ctypes.c_char * PART_TEXT),
+        ("text", ctypes.c_char * EVENT_TEXT),
+    )
+
+
 class Heartbeat(Record):
     """A process is alive and its loop turns, 10 Hz."""
 
@@ -731,6 +761,7 @@ EVENT = Topic("event", Event, depth=256, history=32)
 SERVO_REPORT = Topic("servo_report", ServoReport)
 DEVICE_REPORT = Topic("device_report", DeviceReport, history=16)
 MISSION_PROGRESS = Topic("mission_progress", MissionProgress)
+POINTS_LOST = Topic("points_lost", PointsLost, history=0)
 HEARTBEAT = Topic("heartbeat", Heartbeat, history=0)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import datetime
 from pathlib import Path
 
 import msgspec
@@ -9,10 +10,11 @@ from msgspec import Struct
 
 from groundstation.config import Settings
 from groundstation.run_folder import run_folder
-from groundstation.training.measures import Measures
+from groundstation.training.measures import Measures, Track
 from groundstation.training.mission import Mission
 
 RUN_FILE = "run.json"
+_LONGEST_START_S = 60.0
 
 
 class Run(Struct, frozen=True):
@@ -21,7 +23,8 @@ class Run(Struct, frozen=True):
     Attributes:
         run_id: Names the bus and the run's folder.
         url: Where the vehicle is, as in `--connect`.
-        simulated: The vehicle is ours. Only for labels and for asking back, never for control.
+        simulated: The vehicle is ours. For labels, for asking back, and for what an instructor or a timetable lets
+            happen; never for control.
         device: Which haptic device, as `driver` or `driver:address`.
         mission: The mission, or None for free flight.
         mission_path: Its file, or "".
@@ -37,6 +40,8 @@ class Run(Struct, frozen=True):
         par: What the flight is held against; None where nobody has flown the mission for reference.
         par_from: Whose it is, in words, or "".
         signing_key: The file with the key for MAVLink signing, or "". The key itself is nowhere but there.
+        ghost: The flight that is followed on map and in the viewer, or None.
+        guidance: How strongly the hand is guided towards the mission's way, 0 to 1.
     """
 
     run_id: str
@@ -57,6 +62,8 @@ class Run(Struct, frozen=True):
     par: Measures | None = None
     par_from: str = ""
     signing_key: str = ""
+    ghost: Track | None = None
+    guidance: float = 0.0
 
     @property
     def hand(self) -> Path | None:
@@ -97,3 +104,15 @@ def run_file(run_id: str) -> Path:
 def read_run(path: Path) -> Run:
     """Read a run file back."""
     return msgspec.json.decode(path.read_bytes(), type=Run)
+
+
+def start_of(started: str, wall: datetime.datetime, monotonic: float) -> float:
+    """Return when a run was started on the monotonic clock, s.
+
+    Args:
+        started: Wall-clock time of the start, ISO 8601.
+        wall: Wall-clock time now.
+        monotonic: Monotonic time now, s; also the answer where the wall clock was put right in between.
+    """
+    age = (wall - datetime.datetime.fromisoformat(started)).total_seconds()
+    return monotonic - age if 0.0 <= age <= _LONGEST_START_S else monotonic

@@ -33,8 +33,12 @@ from groundstation.messages import (
 )
 from groundstation.pilot.choices import ALL_CUES
 from groundstation.run import Run
+from groundstation.training.attempts import Attempts
 from groundstation.training.director import Director
+from groundstation.training.judgement import Judgement, judgement_of
+from groundstation.training.measurer import Measurer
 from groundstation.training.mission import MISSIONS_FOLDER, load_mission
+from groundstation.training.sights import Sights
 from sim.environment.world import World
 
 START = 1000.0
@@ -275,20 +279,32 @@ class CannedFollower:
 
     def __init__(self, run: Run) -> None:
         assert run.mission is not None
-        self.director = Director(run.mission, World(run.mission.obstacle), radius=0.2)
+        self.attempts = Attempts(run.mission, radius=0.2)
+        self.judgement: Judgement | None = None
+        self._par = run.par
+        self._sights = Sights()
         self._seen_t = 0.0
+
+    @property
+    def measurer(self) -> Measurer:
+        """Measures the flight."""
+        return self.attempts.current
+
+    @property
+    def director(self) -> Director:
+        """Knows how it is going."""
+        return self.attempts.current.director
 
     def look(self, view: Snapshot) -> None:
         """Take note of a snapshot."""
-        if view.vehicle is None or view.status is None or view.vehicle.t <= self._seen_t:
+        state, status, pilot, handle = view.vehicle, view.status, view.pilot, view.handle
+        if state is None or status is None or pilot is None or handle is None or state.t <= self._seen_t:
             return
-        self._seen_t = view.vehicle.t
-        x, y, z, _ = view.vehicle.position
-        flags = {"in_air": bool(view.status.in_air), "armed": bool(view.status.armed)}
-        self.director.vehicle(view.vehicle.t, (x, y, z, 0.0), **flags)
-        if view.pilot is not None and view.pilot.phase == Phase.ENGAGED:
-            force = (0.0, 0.0, 0.0) if view.handle is None else tuple(view.handle.force)
-            self.director.controller(tuple(view.pilot.error)[:3], force)
+        self._seen_t = state.t
+        for sight in (*self._sights.take([state], [status], [pilot], [handle]), *self._sights.rest()):
+            self.attempts.show(sight)
+        if self.attempts.landed:
+            self.judgement = judgement_of(self.attempts.landed[-1], self._par)
 
 
 class CannedReader:

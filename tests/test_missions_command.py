@@ -83,14 +83,14 @@ def test_every_event_is_told_in_words(capsys, tmp_path):
     assert missions("show", path) == 0
     out = " ".join(capsys.readouterr().out.split())
     for words in (
-        "from take-off on: the wind is 3.0 m/s from the north, turbulent (σ_w 0.5 m/s)",
-        "4 s after take-off: a gust of 2.0 m/s from the west, 3 s long",
-        "at point 1: the link is late by 0.3 s, there and back, ± 0.05 s",
-        "2 s after point 1: the link loses 25 % of its frames",
-        "the link is silent for 4 s",
-        "the haptic device is gone for 5 s",
-        "the battery falls to 15 %",
-        "there is no GPS for 6 s",
+        "from take-off on: wind 3.0 m/s from the north, turbulence 0.5 m/s",
+        "4 s after take-off: gust 2.0 m/s from the west, 3 s long",
+        "at point 1: round trip 300 ms ± 50 ms",
+        "2 s after point 1: 25 % of frames lost",
+        "link lost for 4 s",
+        "haptic device lost for 5 s",
+        "battery down to 15 %",
+        "GPS lost for 6 s",
     ):
         assert words in out
 

@@ -14,7 +14,7 @@ from groundstation.pilot.presets import PRESETS, Weights
 from groundstation.pilot.shield.nearby import Near
 
 vectors = st.tuples(*[st.floats(-100, 100)] * 3)
-EACH = Weights(1.0, 1.0, 1.0, 1.0, 1.0)
+EACH = Weights(1.0, 1.0, 1.0, 1.0, 1.0, 1.0)
 CUES = Cues(environment=5.0, reach=1.2, mismatch=0.8, guard=2.5, part_limit=6.0)
 
 
@@ -57,14 +57,14 @@ def test_what_is_further_than_the_reach_is_not_felt_and_no_cue_but_equation_5_pa
     assert cues(felt(force=(9.0, 0.0, 0.0))).position == (9.0, 0.0, 0.0)
 
 
-@pytest.mark.parametrize("cue", list(Cue))
+@pytest.mark.parametrize("cue", [cue for cue in Cue if cue & ALL_CUES])
 def test_every_cue_can_be_switched_off_by_itself(cue: Cue) -> None:
     everything = felt(
         force=(1.0, 0.0, 0.0), nearest=wall(0.5), mismatch=(1.0, 0.0, 0.0), guarded=(1.0, 0.0, 0.0),
         velocity=(0.1, 0.0, 0.0),
     )  # fmt: skip
     both = cues(everything), cues(everything, on=ALL_CUES & ~cue)
-    for name, with_it, without in zip(CueForces._fields, *both, strict=True):
+    for name, with_it, without in zip(CueForces._fields[:5], *(each[:5] for each in both), strict=True):
         assert without == (ZERO3 if name.upper() == cue.name else with_it)
         assert with_it != ZERO3
 
@@ -86,9 +86,7 @@ def test_in_the_heading_frame_the_force_is_turned_to_the_hand_but_not_the_dampin
     assert hand_force(parts, pi / 2, 10.0) == pytest.approx((-3.0, 0.5, 1.0))
 
 
-@given(
-    st.builds(CueForces, vectors, vectors, vectors, vectors, vectors), st.floats(-7, 7), st.floats(0.01, 20)
-)
+@given(st.builds(CueForces, *[vectors] * 6), st.floats(-7, 7), st.floats(0.01, 20))
 def test_no_force_is_stronger_than_the_device_and_a_clipped_one_keeps_its_direction(
     parts: CueForces, turn: float, limit: float
 ) -> None:

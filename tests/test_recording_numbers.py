@@ -49,7 +49,7 @@ from groundstation.recording.columns import Heartbeats, OnChange, number_chunks,
 from groundstation.recording.echoes import Echoes
 from groundstation.recording.item import Chunk, nanoseconds, time_column
 from groundstation.recording.motion import Motion, Trail, quaternions
-from groundstation.recording.session import start_of
+from groundstation.run import start_of
 
 START = 1_000.0
 ANGLES = st.floats(-math.pi, math.pi)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+import threading
 import urllib.parse
 from pathlib import Path
 
@@ -13,7 +14,8 @@ from test_review_flight import record
 from groundstation.errors import InputError
 from groundstation.recording import live
 from groundstation.recording.blueprint import blueprint
-from groundstation.recording.live import start_viewer
+from groundstation.recording.live import free_tcp_port, start_viewer
+from groundstation.review.jump import go_to
 
 sys.path.append(str(Path(__file__).resolve().parents[1] / "docs" / "pictures"))
 from headless_viewer import HeadlessViewer, ViewerError
@@ -76,3 +78,18 @@ def test_without_a_graphics_driver_there_is_no_picture(monkeypatch):
     monkeypatch.setenv("VK_ICD_FILENAMES", "/nonexistent")
     with pytest.raises(ViewerError, match="Vulkan"):
         HeadlessViewer()
+
+
+def test_the_viewer_is_taken_to_a_moment_once_it_has_loaded(tmp_path, viewer):
+    path = record(tmp_path)
+    port = urllib.parse.urlsplit(viewer._client.url).port
+    opening = threading.Thread(target=viewer.open, args=(path,))
+    opening.start()
+    assert go_to(port, 1.25)
+    opening.join()
+    state = viewer._client.get_state()
+    assert state.recordings[0].current_time == 1_250_000_000
+
+
+def test_a_viewer_that_was_closed_is_not_waited_for():
+    assert not go_to(free_tcp_port(), 1.0, running=lambda: False)

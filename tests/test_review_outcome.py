@@ -6,6 +6,7 @@ import msgspec
 import pytest
 from canned_flight import START, STEP_S, CannedFlight, canned_run
 
+from groundstation.cli import main
 from groundstation.messages import HANDLE, PILOT_STATE, VEHICLE_STATE, VEHICLE_STATUS
 from groundstation.recording.batch import Batch
 from groundstation.recording.session import Session
@@ -117,3 +118,32 @@ def test_without_a_mission_there_is_nothing_to_judge(tmp_path):
     run = msgspec.structs.replace(canned_run(mission=False), log=str(tmp_path / "flight"))
     Session(run, START, lambda _severity, text: pytest.fail(text)).close()
     assert outcome_of(Flight(run.recording)).result == "no mission"
+
+
+def code_of(*arguments: str) -> object:
+    with pytest.raises(SystemExit) as left:
+        main(arguments)
+    return left.value.code
+
+
+def test_the_score_of_a_recording_is_told_in_lines(live_and_recorded, capsys):
+    _, flight = live_and_recorded
+    outcome = outcome_of(flight)
+    assert code_of("review", str(flight.path), "--score") == (0 if outcome.completed else 1)
+    told = capsys.readouterr().out
+    assert told.startswith(f"{flight.mission.name}: {outcome.result}\n")
+    assert f"{outcome.score.points:.1f} of 100, held against the expert operator on seed 0" in told
+    first = outcome.judgement.story[0]
+    assert f"(--at {first.t - flight.start:.1f}), {first.part}: {first.words}" in told
+
+
+def test_a_flight_of_no_mission_has_no_score_to_tell(tmp_path, capsys):
+    run = msgspec.structs.replace(canned_run(mission=False), log=str(tmp_path / "flight"))
+    Session(run, START, lambda _severity, text: pytest.fail(text)).close()
+    assert code_of("review", str(run.recording), "--score") == 2
+    assert "nothing to be scored" in capsys.readouterr().err
+
+
+def test_a_moment_that_is_no_time_is_refused(capsys):
+    assert code_of("review", "1", "--at", "-3") == 2
+    assert "--at" in capsys.readouterr().err

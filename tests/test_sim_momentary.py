@@ -41,6 +41,16 @@ def test_a_gust_told_twice_on_a_bad_link_blows_once():
     assert flight.sim.wind == pytest.approx(PEAK, rel=0.01)
 
 
+def test_with_0_in_between_it_is_another_gust_and_they_add_up():
+    flight = Flight().take_off()
+    gust(flight, 4.0).run(2.0)
+    flight.set("SIM_GUST_S", 0.0).run(DT)
+    gust(flight, 4.0).run(1.0)
+    assert flight.sim.wind == pytest.approx(PEAK, rel=0.02), "half of each"
+    flight.run(1.0)
+    assert flight.sim.wind == pytest.approx(PEAK, rel=0.02), "the first is over"
+
+
 @pytest.mark.parametrize(
     ("left", "action", "words", "mode"),
     [

@@ -136,7 +136,7 @@ async def newest(receiver: StickReceiver) -> StickSample:
 def test_only_a_device_of_this_run_is_moved_by_the_screen(run_id, monkeypatch, own, has_stick):
     seen: list[object] = []
 
-    def instead(run, console, supervisor, stick, follower) -> int:
+    def instead(run, console, supervisor, stick, **_) -> int:
         seen.append(stick)
         return 0
 

@@ -180,7 +180,7 @@ async def test_clutch_and_an_open_hold_are_said():
         scene.reader.shown.pilot.clutched = scene.reader.shown.pilot.waiting = 1
         await scene.see()
         assert " CLUTCH " in scene.text("#status")
-        assert "C takes hold again" in scene.text("#banner")
+        assert "c takes hold again" in scene.text("#banner")
         scene.reader.shown.pilot.clutched = 0
         await scene.see()
         assert " CENTRE HANDLE " in scene.text("#status")
@@ -295,7 +295,7 @@ async def test_in_position_mode_the_stick_stays_where_it_is_let_go_and_stops_tur
     async with cockpit() as scene:
         await moved(scene, mapping=MappingMode.POSITION)
         assert scene.app.hand.share == pytest.approx((0.4, 0.0, 0.2, 0.0))
-        assert "C clutches to reach on" in scene.text("#banner")
+        assert "c clutches to reach on" in scene.text("#banner")
         await scene.press("space")
         assert scene.app.hand.share == (0.0, 0.0, 0.0, 0.0)
 

@@ -48,5 +48,15 @@ def test_writes(happening, writes):
     assert all(name.startswith("SIM_") and SPECS[name].allows(value) for name, value in found)
 
 
-def test_what_begins_a_gust_is_written_last():
-    assert writes_for(GustNow(velocity=AIR, duration_s=4.0))[-1][0] == "SIM_GUST_S"
+@pytest.mark.parametrize(
+    ("happening", "name", "value"),
+    [
+        (GustNow(velocity=AIR, duration_s=4.0), "SIM_GUST_S", 4.0),
+        (GpsLoss(duration_s=6.0), "SIM_GPS_LOST", 6.0),
+        (BatteryLeft(remaining=0.1), "SIM_BAT_LEFT", 0.1),
+    ],
+)
+def test_the_same_again_is_another_one(happening, name, value):
+    writes = writes_for(happening)
+    assert (writes[0], writes[-1]) == ((name, 0.0), (name, value))
+    assert [each for each, _ in writes].count(name) == 2

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import NamedTuple
 
-from drivers.device import DeviceInfo
+from drivers.device import DeviceInfo, Vector3
 from groundstation.config import Settings
 from groundstation.evaluation.channel_ends import Link
 from groundstation.evaluation.hands import Hand
@@ -44,6 +44,8 @@ class Setup(NamedTuple):
         controller: Another than the paper's.
         fence: Where the hand may take the vehicle.
         operator: Couples and chooses; unless given, is coupled and keeps to what the settings choose.
+        way: That the hand is guided to, world, m.
+        guidance: How strongly, 0 to 1; the operator chooses the cue.
         hesitates: How long that takes after a coupling was lost and could be had again, s.
     """
 
@@ -57,6 +59,8 @@ class Setup(NamedTuple):
     controller: Controller | None = None
     fence: Fence | None = None
     operator: Operator | None = None
+    way: tuple[Vector3, ...] = ()
+    guidance: float = 0.0
     hesitates: float = 0.0
 
 
@@ -162,4 +166,4 @@ def known(vehicle: Simulator, setup: Setup) -> Surroundings:
     airframe = vehicle.airframe
     scenario = setup.scenario
     chi = airframe.chi if scenario.vehicle.model == "dynamic" else None
-    return Surroundings(scenario.obstacle, airframe.radius, chi, setup.fence)
+    return Surroundings(scenario.obstacle, airframe.radius, chi, setup.fence, setup.way, setup.guidance)

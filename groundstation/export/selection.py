@@ -21,6 +21,7 @@ from groundstation.review.flight import Flight, Line, Numbers
 _WORDS = {
     entities.REASON: "Why the hand is not coupled",
     entities.GUARDED: "What the guard keeps away from",
+    entities.INTERVENTIONS: "What was let happen, as it was asked for and answered",
 }
 
 

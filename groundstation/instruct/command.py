@@ -22,7 +22,7 @@ from groundstation.training.happening import Happening, words
 _PATIENCE_S = 130.0
 _COMMAND_S = 10.0
 # What was sent must be taken before its sender goes, s: everyone looks at least ten times a second.
-_TAKEN_S = 0.3
+_TAKEN_S = 0.5
 _FIRST_S = 1.5
 _WATCH_S = 0.1
 # Without a terminal to change a line on, s.

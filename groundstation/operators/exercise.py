@@ -36,9 +36,11 @@ from sim.kinematics import world_rates
 from sim.people import PEOPLE
 from sim.simulator import Simulator
 
-# A hand that leaves the handle alone from take-off on.
+# A hand that leaves the handle alone from take-off on, and only lands when that is all there is left to do.
 NOBODY = "nobody"
-# A quarter of the real servo's rate.
+# A quarter of the real servo's rate, and of its cost. With it the expert's slalom, landing and wind take the same
+# time as at 1000 Hz to the last digit, on two seeds each. The way is off by 0.1 mm at most, clearance by 3 mm, the
+# RMS of p̃ by 1 mm and the effort by 0.003 N: less than from seed to seed.
 RATE_HZ = 250.0
 # A landing that takes longer is none, s: the autopilot sinks at 0.7 m/s.
 _LANDING_S = 60.0
@@ -148,11 +150,15 @@ class _Outing:
 
     def fly(self) -> None:
         """Fly the mission, then let go and land."""
-        flight, pupil = self.flight, self._pupil
-        flight.fly(self._limit - flight.t, lambda: self._down or (pupil is not None and pupil.through))
-        if pupil is not None and pupil.through and not self._down:
+        flight = self.flight
+        flight.fly(self._limit - flight.t, lambda: self._down or self._through)
+        if self._through and not self._down:
             flight.local.coupling.land()
             flight.fly(_LANDING_S, lambda: self._down)
+
+    @property
+    def _through(self) -> bool:
+        return self._pupil.through if self._pupil else self.measurer.director.at_the_end
 
     @property
     def _down(self) -> bool:

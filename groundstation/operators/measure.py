@@ -34,9 +34,9 @@ class Asked(NamedTuple):
 
 
 class Flight(NamedTuple):
-    """An exercise of the mission at `index` of those asked for; it is what a process is given."""
+    """An exercise of one of the missions asked for, by its number; it is what a process is given."""
 
-    index: int
+    number: int
     exercise: Exercise
 
 
@@ -50,8 +50,8 @@ def run(asked: argparse.Namespace) -> int:
         raise InputError(f"--seeds {asked.seeds}: is not a number of seeds from 1 to {_MOST_SEEDS}.")
     missions = _missions(asked)
     flights = [
-        Flight(index, exercise)
-        for index, (_, mission) in enumerate(missions)
+        Flight(number, exercise)
+        for number, (_, mission) in enumerate(missions)
         for exercise in exercises(mission, asked.seeds)
     ]
     jobs = processes(asked.jobs, len(flights))
@@ -78,7 +78,7 @@ def exercises(mission: Mission, seeds: int) -> list[Exercise]:
 
 
 def _fly(flight: Flight) -> tuple[int, Flown]:
-    return flight.index, fly(flight.exercise)
+    return flight.number, fly(flight.exercise)
 
 
 def _standings(
@@ -88,11 +88,11 @@ def _standings(
     flown: list[list[Flown]] = [[] for _ in missions]
     expected = len(flights) // len(missions)
     with closing(fly_here(_fly, flights, jobs)) as results:
-        for index, result in results:
+        for number, result in results:
             progress.add(result.flown)
-            flown[index].append(result)
-            if len(flown[index]) == expected:
-                yield _keep(*missions[index], flown[index])
+            flown[number].append(result)
+            if len(flown[number]) == expected:
+                yield _keep(*missions[number], flown[number])
 
 
 def _keep(path: Path, mission: Mission, flown: Sequence[Flown]) -> Standing:

@@ -84,16 +84,22 @@ class Pupil:
         settled = t - self._near_t >= _SETTLED_S
         if director.at_the_end or director.stage is Stage.DONE:
             self._land(settled, position)
-        elif director.leg > self._end or (settled and director.leg < self._end):
-            # The next, or one that was believed to be passed and was not.
-            self._fly_on(director.leg)
+        elif director.leg > self._end:
+            self._fly(director.leg, self._next_stop(director.leg))
+        elif settled and director.leg < self._end:
+            # It was believed to be passed and was not: this time it is stopped at.
+            self._fly(director.leg, director.leg)
 
-    def _fly_on(self, leg: int) -> None:
-        """Fly from the point `leg` to the first at which something is to be waited for."""
+    def _next_stop(self, leg: int) -> int:
+        """Return the first point from `leg` on at which something is to be waited for."""
         points = self._points
-        end = leg
-        while end + 1 < len(points) and not points[end].hold_s and points[end].yaw_deg is None:
-            end += 1
+        while leg + 1 < len(points) and not points[leg].hold_s and points[leg].yaw_deg is None:
+            leg += 1
+        return leg
+
+    def _fly(self, leg: int, end: int) -> None:
+        """Fly to the point `leg` and on to `end`, and stay there."""
+        points = self._points
         yaw_deg = points[end].yaw_deg
         yaw = math.nan if yaw_deg is None else math.radians(yaw_deg)
         self._turn_to([point.at for point in points[leg : end + 1]], yaw)

@@ -6,7 +6,9 @@ from typing import NamedTuple
 
 from groundstation.messages import Cue, MappingMode, Preset
 
+# Those that need nothing but the flight itself; guidance needs a mission's way.
 ALL_CUES = int(Cue.POSITION | Cue.ENVIRONMENT | Cue.MISMATCH | Cue.GUARD | Cue.DAMPING)
+GUIDED_CUES = ALL_CUES | int(Cue.GUIDANCE)
 
 
 class Choices(NamedTuple):

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from groundstation.config import Buttons, Settings
 from groundstation.messages import Command, CommandKind, MappingMode, Preset
-from groundstation.pilot.choices import ALL_CUES, Choices
+from groundstation.pilot.choices import ALL_CUES, GUIDED_CUES, Choices
 
 CHOOSING = frozenset(
     {
@@ -40,12 +40,13 @@ class Chosen(NamedTuple):
     buttons: int = 0
 
 
-def beginning(settings: Settings) -> Chosen:
-    """Return what the settings choose."""
+def beginning(settings: Settings, *, guided: bool = False) -> Chosen:
+    """Return what the settings choose; where the hand is guided, with that cue."""
     return Chosen(
         Choices(
             mapping=MappingMode[settings.mapping.mode.upper()],
             preset=Preset[settings.control.preset.upper()],
+            cues=GUIDED_CUES if guided else ALL_CUES,
         )
     )
 
@@ -66,7 +67,7 @@ def obeyed(chosen: Chosen, command: Command) -> tuple[Chosen, str]:
     elif kind is CommandKind.CLUTCH:
         choices = choices._replace(clutched=bool(value))
     elif kind is CommandKind.CUES:
-        choices = choices._replace(cues=value & ALL_CUES)
+        choices = choices._replace(cues=value & GUIDED_CUES)
     elif kind is CommandKind.MAPPING and value in set(MappingMode):
         choices = choices._replace(mapping=MappingMode(value))
     elif kind is CommandKind.PRESET and value in set(Preset):

@@ -12,6 +12,7 @@ both cases giving way to the force moves p_h towards the drone.
 | mismatch | k (v − v_c) | the drone does not have the velocity it is meant to have |
 | guard | k (u_safe − u_cmd) | what the shield changes of what the hand asks for |
 | damping | −b ẋ | the handle's own velocity |
+| guidance | see `groundstation.pilot.guidance` | where the mission's way is |
 """
 
 from __future__ import annotations
@@ -27,7 +28,7 @@ from groundstation.pilot.presets import Weights
 from groundstation.pilot.shield.nearby import Near
 
 # Plain numbers: flags of an enumeration are slow to combine.
-_POSITION, _ENVIRONMENT, _MISMATCH, _GUARD, _DAMPING = (int(cue) for cue in Cue)
+_POSITION, _ENVIRONMENT, _MISMATCH, _GUARD, _DAMPING, _ = (int(cue) for cue in Cue)
 
 
 class CueForces(NamedTuple):
@@ -38,6 +39,7 @@ class CueForces(NamedTuple):
     mismatch: Vector3 = ZERO3
     guard: Vector3 = ZERO3
     damping: Vector3 = ZERO3
+    guidance: Vector3 = ZERO3
 
 
 class Felt(NamedTuple):
@@ -104,8 +106,10 @@ def hand_force(cues: CueForces, turn: float, limit: float) -> Vector3:
         turn: Angle from the world's axes to the handle's, as in the mapping, rad.
         limit: Largest norm, N; a stronger force is shortened and keeps its direction.
     """
-    a, b, c, d, (u, v, w) = cues
+    a, b, c, d, (u, v, w), e = cues
     total = (a[0] + b[0] + c[0] + d[0], a[1] + b[1] + c[1] + d[1], a[2] + b[2] + c[2] + d[2])
+    if e is not ZERO3:
+        total = (total[0] + e[0], total[1] + e[1], total[2] + e[2])
     x, y, z = body_from_world(total, turn)
     return within((x + u, y + v, z + w), limit)
 

@@ -222,3 +222,4 @@ def _fill_cues(record: PilotState, outputs: Outputs) -> None:
     record.mismatch[:] = cues.mismatch
     record.guard[:] = cues.guard
     record.damping[:] = cues.damping
+    record.guidance[:] = cues.guidance

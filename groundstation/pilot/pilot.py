@@ -27,6 +27,7 @@ from groundstation.pilot.controller import (
 from groundstation.pilot.feedback import CueForces, Feedback, Felt, hand_force, scaled
 from groundstation.pilot.forecast import Forecast, Forecaster, noted
 from groundstation.pilot.guest import ControllerError
+from groundstation.pilot.guidance import NOWHERE, guidance_for
 from groundstation.pilot.inputs import Inputs
 from groundstation.pilot.link_state import shares
 from groundstation.pilot.passivity.choice import passivity_named
@@ -57,6 +58,7 @@ class Memory(NamedTuple):
         commanding: Of guard, limits and compensation.
         presence: Share of the force that is rendered; it grows after engaging.
         port: Account of the haptic port's energy; with the force on the hand.
+        station: How far along the mission's way the vehicle is, m.
         coupled: The last tick was an engaged one.
     """
 
@@ -68,6 +70,7 @@ class Memory(NamedTuple):
     commanding: Commanding = Commanding()
     presence: float = 0.0
     port: Port = Port()
+    station: float = NOWHERE
     coupled: bool = False
 
 
@@ -170,6 +173,7 @@ class Pilot:
         self._forecaster = Forecaster(surroundings.chi)
         self._controller: Controller = controller or PaperController()
         self._setpoints = SetpointMaker(settings, surroundings)
+        self._guidance = guidance_for(settings, surroundings, device)
 
     def step(self, memory: Memory, inputs: Inputs) -> tuple[Memory, Outputs]:
         """Run one tick.
@@ -236,7 +240,10 @@ class Pilot:
         state = memory.state if memory.coupled else self._controller.start()
         state, law = self._controller.step(state, view)
         commanding, commanded = self._setpoints.step(memory.commanding, law.v_ref, forecast, inputs, terms)
-        cues = self._cues(inputs, law, commanded, p[3], terms)
+        cues, station = self._cues(inputs, law, commanded, p[3], terms), NOWHERE
+        if self._guidance is not None:
+            station, guidance = self._guided(memory.station, inputs, reference, p, terms)
+            cues = cues._replace(guidance=guidance)
         presence, wanted = self._rendered(memory.presence, port.force, inputs, cues, p[3])
         port = self._held(port, wanted, inputs)
         forecast = noted(forecast, commanded.setpoint)
@@ -244,7 +251,7 @@ class Pilot:
             commanded.setpoint, port, p, reference, view.error, law, commanded, cues, forecast, terms
         )
         return Memory(
-            sight, forecast, reference, state, terms, commanding, presence, port, coupled=True
+            sight, forecast, reference, state, terms, commanding, presence, port, station, coupled=True
         ), outputs
 
     def _terms(self, memory: Memory, inputs: Inputs) -> Terms:
@@ -292,6 +299,15 @@ class Pilot:
         felt = Felt(law.force, nearest(commanded.near), mismatch, guarded, inputs.hand.velocity)
         share = terms.link.gain * self.gains[choices.mapping].share
         return self._feedback[choices.mapping].cues(felt, weights, choices.cues, share)
+
+    def _guided(
+        self, station: float, inputs: Inputs, reference: Reference, p: Vector4, terms: Terms
+    ) -> tuple[float, Vector3]:
+        """Return how far along the mission's way the vehicle is, and what of the force leads there."""
+        assert self._guidance is not None
+        turn = self._references.by_rate.turn(p[3])
+        share = terms.assistance.weights.guidance * terms.link.gain * self.gains[inputs.choices.mapping].share
+        return self._guidance.look(station, inputs, p, turn, 0.0 if reference.waiting else share)
 
     def _rendered(
         self, presence: float, force: Vector3, inputs: Inputs, cues: CueForces, vehicle_yaw: float

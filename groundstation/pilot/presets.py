@@ -13,6 +13,7 @@ class Weights(NamedTuple):
     mismatch: float
     guard: float
     damping: float
+    guidance: float
 
 
 class Assistance(NamedTuple):
@@ -34,9 +35,9 @@ class Assistance(NamedTuple):
 # In the order of `Preset`.
 PRESETS: tuple[Assistance, ...] = (
     # Exactly equations (4) and (5): what the hand asks for is flown, also into an obstacle.
-    Assistance(Weights(1.0, 0.0, 0.0, 0.0, 0.0), guard=False, compensation=False, speed=1.0),
-    Assistance(Weights(1.0, 1.0, 0.0, 1.0, 1.0), guard=True, compensation=True, speed=1.0),
+    Assistance(Weights(1.0, 0.0, 0.0, 0.0, 0.0, 0.0), guard=False, compensation=False, speed=1.0),
+    Assistance(Weights(1.0, 1.0, 0.0, 1.0, 1.0, 1.0), guard=True, compensation=True, speed=1.0),
     # The drone itself, and as little else as possible; the guard stays, silently.
-    Assistance(Weights(1.0, 0.0, 1.0, 0.0, 0.0), guard=True, compensation=True, speed=1.0),
-    Assistance(Weights(1.0, 1.5, 0.0, 1.5, 1.0), guard=True, compensation=True, speed=0.6),
+    Assistance(Weights(1.0, 0.0, 1.0, 0.0, 0.0, 0.0), guard=True, compensation=True, speed=1.0),
+    Assistance(Weights(1.0, 1.5, 0.0, 1.5, 1.0, 1.0), guard=True, compensation=True, speed=0.6),
 )

@@ -93,7 +93,7 @@ class Servo:
         self._settings = run.settings
         self._surroundings = surroundings_of(run)
         self._controller = load_controller(run.controller, run.settings)
-        self._chosen = beginning(run.settings)
+        self._chosen = beginning(run.settings, guided=run.guidance > 0.0)
         self._bus = bus
         self._clock = clock
         self._keeper = keeper

@@ -7,7 +7,7 @@ import datetime
 import fcntl
 import os
 import sqlite3
-from collections.abc import Iterator
+from collections.abc import Generator
 from pathlib import Path
 
 from groundstation.errors import InputError
@@ -113,7 +113,7 @@ def move_aside(path: Path, now: datetime.datetime) -> str:
 
 
 @contextlib.contextmanager
-def _alone_in(folder: Path) -> Iterator[None]:
+def _alone_in(folder: Path) -> Generator[None]:
     """Keep other programs from moving the same file: the second would move the new one."""
     handle = os.open(folder, os.O_RDONLY)
     try:

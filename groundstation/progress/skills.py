@@ -155,7 +155,7 @@ def _advice(
     hard = [record for record in learning if record.failed >= STUCK]
     new = [record for record in learning if record not in hard]
     latest = records[last.mission] if last else None
-    if latest in new:
+    if latest and latest in new:
         return Advice(latest.mission.name, "not passed yet: fly it again")
     due = _weakest([record for record in records.values() if record.due(today)], levels)
     if due and not (new and latest and last and latest.repeated(last, today)):

@@ -8,7 +8,7 @@ from __future__ import annotations
 import contextlib
 import datetime
 import sqlite3
-from collections.abc import Iterable, Iterator
+from collections.abc import Generator, Iterable
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
@@ -187,7 +187,7 @@ class Store:
             raise unusable(self._path, error) from error
 
     @contextlib.contextmanager
-    def _writing(self) -> Iterator[sqlite3.Connection]:
+    def _writing(self) -> Generator[sqlite3.Connection]:
         """Change all or nothing; others wait meanwhile."""
         try:
             self._connection.execute("BEGIN IMMEDIATE")

@@ -38,6 +38,7 @@ def about_flight(run: Run, start: float) -> Iterator[Still]:
         "controller": run.controller,
         "pilot": run.pilot,
         "seed": run.seed,
+        "guidance": run.guidance,
         "groundstation": groundstation.__version__,
         "revision": revision(),
         "rerun": rr.__version__,

@@ -24,10 +24,13 @@ _TRAILS: Overrides = {
     entities.VEHICLE_TRAIL: _WHOLE_WAY,
     entities.HAND_TRAIL: _WHOLE_WAY,
     entities.INCIDENTS: _WHOLE_WAY,
+    entities.LOSSES: _WHOLE_WAY,
 }
 _AXIS = rrb.TimeAxis(link=rrb.components.LinkAxis.LinkToGlobal)
 # Rerun shows them by their paths' alphabet.
-_HAPPENED = (lanes.ALERT, lanes.GUARD, lanes.MODE, lanes.PHASE, lanes.STAGE, lanes.VEHICLE)
+_HAPPENED = (
+    lanes.ALERT, lanes.GUARD, lanes.INTERVENTION, lanes.MODE, lanes.PHASE, lanes.POINTS, lanes.STAGE, lanes.VEHICLE,
+)  # fmt: skip
 # The velocities share their colours: one legend is enough.
 _FIRST = "Forward velocity"
 # From above: what is shown around a mission, m, and how wide and deep an eye sees, m a metre of its height.
@@ -55,7 +58,7 @@ def blueprint(mission: Mission | None) -> rrb.Blueprint:
         rrb.Vertical(
             rrb.Horizontal(left, right, column_shares=[5, 6]),
             _states("What happened", *_HAPPENED),
-            row_shares=[20, 8],
+            row_shares=[20, 10],
         ),
         rrb.BlueprintPanel(state="collapsed"),
         rrb.SelectionPanel(state="collapsed"),
@@ -191,6 +194,7 @@ def _hand() -> rrb.Grid:
 def _feel() -> rrb.Vertical:
     plots = rrb.Grid(
         _plot("Force by cue, N", schema.CUE_SIZES.path),
+        _plot("Guidance to the mission's way, N", schema.GUIDANCE_CUE.path),
         _plot("Energy of the hand's port, J", schema.HANDLE_ENERGY.path),
         _plot("K₁ in effect, 1/s, and phase margin, rad", schema.K1.path, schema.PHASE_MARGIN.path),
         _plot("Round trip, s, and what it leaves, share", schema.RECKONED.path, schema.SHARES.path),

@@ -20,6 +20,7 @@ from groundstation.messages import (
     MISSION_PROGRESS,
     OBSTACLES,
     PILOT_STATE,
+    POINTS_LOST,
     SERVO_REPORT,
     SETPOINT,
     TICK_INPUTS,
@@ -150,6 +151,7 @@ _NUMBERS: tuple[tuple[Topic[Any], tuple[tuple[Quantity, Callable[[Rows], Numbers
             (schema.MISMATCH_CUE, _fields("mismatch")),
             (schema.GUARD_CUE, _fields("guard")),
             (schema.DAMPING_CUE, _fields("damping")),
+            (schema.GUIDANCE_CUE, _fields("guidance")),
             (schema.CUE_SIZES, _sizes("force", "environment", "mismatch", "guard", "damping")),
             (schema.CUES_ON, _fields("cues")),
             (schema.PREDICTED, _fields("predicted")),
@@ -216,6 +218,11 @@ _NUMBERS: tuple[tuple[Topic[Any], tuple[tuple[Quantity, Callable[[Rows], Numbers
             (schema.RAW_ATTITUDE, _fields("roll", "pitch", "yaw", "boot_t")),
             (schema.RAW_RATES, _fields("rates")),
         ),
+    ),
+    # A moment's length and not its end: the timeline has its beginning.
+    (
+        POINTS_LOST,
+        ((schema.LOST, lambda rows: np.column_stack((rows["points"], rows["until"] - rows["t"]))),),
     ),
     (COMMAND, ((schema.COMMANDED, _fields("number", "kind", "value")),)),
     (COMMAND_ANSWER, ((schema.ANSWERED, _fields("number", "kind", "ok")),)),

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 EVENTS = "/events"
 COMMANDS = f"{EVENTS}/commands"
+SCORE = f"{EVENTS}/score"
 REASON = "/pilot/reason"
 GUARDED = "/pilot/guarded_by"
 UNSAFE = "/vehicle/unsafe"
 PARAMETERS = "/vehicle/parameters"
+INTERVENTIONS = "/interventions"
 # Static text of the whole flight.
 ABOUT = "/about"
 
@@ -31,6 +33,9 @@ STOP = "/world/stop"
 PROSPECT = "/world/prospect"
 ECHOES = "/world/echoes"
 INCIDENTS = "/world/incidents"
+LOSSES = "/world/points_lost"
+GHOST = "/world/ghost"
+GHOST_TRAIL = "/world/ghost_trail"
 # Length of the arrow that shows the force on the hand, m a newton.
 ARROW_M_PER_N = 0.25
 
@@ -58,5 +63,10 @@ SCENE: tuple[tuple[str, str], ...] = (
     (STOP, "where it would come to rest from there with a centred handle, while engaged"),
     (PROSPECT, "a line from where it is seen through both, while engaged"),
     (ECHOES, "what the vehicle's own distance sensors see, as points"),
+    (
+        f"{GHOST}, {GHOST_TRAIL}",
+        "where the flight that is followed was so long after take-off, and the way it came",
+    ),
     (INCIDENTS, "collisions and alarms, as points where the vehicle was then"),
+    (LOSSES, "the moments that cost points, where the vehicle was then, once it has landed"),
 )

@@ -6,6 +6,9 @@ from dataclasses import dataclass
 from enum import Enum
 
 from groundstation.training.director import Stage
+from groundstation.training.events import DeviceLoss, GpsLoss, LinkLoss
+from groundstation.training.in_force import NOTHING, STATES
+from groundstation.training.score import UNFINISHED, YARDSTICKS
 
 
 class Tone(Enum):
@@ -128,12 +131,31 @@ COMPENSATION = Lane(
     "Whether the vehicle's dynamics are compensated",
     (("off", Tone.IDLE), ("on", Tone.GOOD)),
 )
+_FAULTS = frozenset({STATES[LinkLoss], STATES[DeviceLoss], STATES[GpsLoss]})
+INTERVENTION = Lane(
+    "/state/intervention",
+    "What an instructor or the mission's timetable does, the gravest of it; from the first on",
+    (
+        (NOTHING, Tone.IDLE),
+        *((word, Tone.FAULT if word in _FAULTS else Tone.WARNING) for word in STATES.values()),
+    ),
+)
 QUIET, WARNING, COLLISION, ALARM = "quiet", "warning", "collision", "alarm"
 ALERT = Lane(
     "/state/alert",
     "What went wrong: each warning, collision and alarm for half a second",
     ((QUIET, Tone.IDLE), (WARNING, Tone.WARNING), (COLLISION, Tone.FAULT), (ALARM, Tone.FAULT)),
 )
+POINTS = Lane(
+    "/state/points",
+    "Where points were lost, by part of the score, once the vehicle has landed",
+    (
+        (QUIET, Tone.IDLE),
+        *((yard.part, Tone.WARNING) for yard in YARDSTICKS),
+        (UNFINISHED, Tone.FAULT),
+    ),
+)
 LANES: tuple[Lane, ...] = (
-    ALERT, PHASE, MODE, STREAM, VEHICLE, DEVICE_STATE, STAGE, MAPPING, PRESET, GUARD, COMPENSATION,
+    ALERT, POINTS, PHASE, MODE, STREAM, VEHICLE, DEVICE_STATE, STAGE, MAPPING, PRESET, GUARD, COMPENSATION,
+    INTERVENTION,
 )  # fmt: skip

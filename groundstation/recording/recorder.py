@@ -16,7 +16,7 @@ from groundstation.clock import Every, Pacer
 from groundstation.messages import Severity
 from groundstation.recording.batch import Taps
 from groundstation.recording.room import make_room
-from groundstation.run import Run
+from groundstation.run import Run, start_of
 
 ROLE = "recorder"
 _TURN_S = 0.05
@@ -35,7 +35,7 @@ def record(run: Run, bus: Bus, lifeline: Lifeline) -> None:
     while opening.is_alive():
         taps.drain()
         opening.join(_TURN_S)
-    from groundstation.recording.session import Session, start_of
+    from groundstation.recording.session import Session
 
     if removed := make_room(run.recording.parent, run.settings.recording.folder_gb, run.recording.stem):
         words = f"{removed[0]} to {removed[-1]}" if len(removed) > 1 else removed[0]

@@ -76,9 +76,14 @@ def _looks() -> Iterator[Still]:
     yield Still(entities.STOP, rr.Points3D.from_fields(colors=[palette.VERMILION], radii=[0.05]))
     yield Still(entities.PROSPECT, rr.LineStrips3D.from_fields(colors=[palette.VEHICLE], radii=[-0.75]))
     yield Still(entities.ECHOES, rr.Points3D.from_fields(colors=[palette.PURPLE], radii=[-2.0]))
+    yield Still(entities.GHOST, rr.Points3D.from_fields(colors=[palette.LIGHT], radii=[0.15]))
+    yield Still(entities.GHOST_TRAIL, rr.LineStrips3D.from_fields(colors=[palette.GREY], radii=[-0.75]))
     yield Still(
         entities.INCIDENTS,
         rr.Points3D.from_fields(colors=[palette.VERMILION], radii=[0.1], show_labels=True),
+    )
+    yield Still(
+        entities.LOSSES, rr.Points3D.from_fields(colors=[palette.ORANGE], radii=[0.08], show_labels=False)
     )
     yield Still(entities.FORCE_ARROW, rr.Arrows3D.from_fields(colors=[palette.FORCE], radii=[0.04]))
 

@@ -15,7 +15,8 @@ from groundstation.recording.entities import SCENE
 from groundstation.recording.lanes import LANES
 
 APPLICATION = "groundstation"
-# 5: what the flight is held against, and where it lost points.
+# 5: what the flight is held against, and where it lost points; guidance of the hand, and a ghost in the scene; what
+#    an instructor or a timetable let happen.
 # 4: all that a tick of the servo was made from, to the last bit.
 # 3: every attitude and body rate that the vehicle tells, and commands and answers as numbers.
 # 2: what stands around equations (4) and (5), and the vehicle's own distance sensors. A reader of 5 reads 1 to 4.
@@ -126,6 +127,7 @@ GUARD_CUE = Quantity(
 DAMPING_CUE = Quantity(
     "/pilot/cue/damping", _AXES, "N", "50 Hz", "Against the handle's velocity, handle frame"
 )
+GUIDANCE_CUE = Quantity("/pilot/cue/guidance", _AXES, "N", "50 Hz", "Towards the mission's way, world")
 CUE_SIZES = Quantity(
     "/pilot/cue/sizes",
     ("position", "environment", "mismatch", "guard", "damping"),
@@ -299,11 +301,19 @@ CLEARANCE = Quantity(
 LEGS = Quantity("/mission/legs", ("flown", "of"), "legs", "mission", "How far along the route")
 COLLISIONS = Quantity("/mission/collisions", ("collisions",), "contacts", "mission", "With obstacles, so far")
 
+LOST = Quantity(
+    "/mission/lost",
+    ("points", "length"),
+    "of 100, s",
+    "once landed",
+    "What a moment cost of the score, and how long it was",
+)
+
 QUANTITIES: tuple[Quantity, ...] = (
     HANDLE_POSITION, HANDLE_VELOCITY, SAMPLE_AGE, HANDLE_FORCE, HANDLE_ENERGY, HANDLE_BUTTONS,
     HANDLE_READY, CENTRED, SETPOINT_NUMBER,
     P_H, P_H_RATE, ERROR, V_REF, V_SAFE, V_C, K1, PHASE_MARGIN, SHARES,
-    FORCE_CUE, ENVIRONMENT_CUE, MISMATCH_CUE, GUARD_CUE, DAMPING_CUE, CUE_SIZES, CUES_ON,
+    FORCE_CUE, ENVIRONMENT_CUE, MISMATCH_CUE, GUARD_CUE, DAMPING_CUE, GUIDANCE_CUE, CUE_SIZES, CUES_ON,
     PREDICTED, PREDICTED_VELOCITY, STOP, PUSH,
     *REFERENCES, *EXECUTED,
     POSITION, VELOCITY, UNTRUSTED, ATTITUDE, RAW_ATTITUDE, RAW_RATES, SYSTEM_ID, BOOT_TIME,
@@ -312,9 +322,12 @@ QUANTITIES: tuple[Quantity, ...] = (
     STATE_AGE, HANDLE_AGE, ROUND_TRIP, RECKONED, SILENCE,
     LOSS, GATE,
     SERVO_RATE, SERVO_LATE, SERVO_RUN, REALTIME, SERVO_TIME, SERVO_TICKS, TICK, KNOWN, LIMITS,
-    TARGET_DISTANCE, CLEARANCE, LEGS, COLLISIONS,
+    TARGET_DISTANCE, CLEARANCE, LEGS, COLLISIONS, LOST,
     COMMANDED, ANSWERED,
 )  # fmt: skip
+
+# In which version a quantity was added, where that is not the first.
+SINCE = {GUIDANCE_CUE: 5}
 
 FORCE_SIZE = Quantity(
     "/handle/force_size",

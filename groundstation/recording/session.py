@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import datetime
 import threading
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -19,34 +18,24 @@ from groundstation.recording.echoes import Echoes
 from groundstation.recording.feed import LiveFeed
 from groundstation.recording.file import FlightFile, RecordingError
 from groundstation.recording.gauges import Gauges
+from groundstation.recording.ghost import Ghost
 from groundstation.recording.incidents import Incidents
+from groundstation.recording.interventions import Interventions
 from groundstation.recording.item import Item
 from groundstation.recording.motion import Motion
 from groundstation.recording.parts import part_path
 from groundstation.recording.room import left_gb
 from groundstation.recording.scene import static_scene
+from groundstation.recording.story import Story
 from groundstation.recording.style import static_styles
 from groundstation.run import Run
 
 Tell = Callable[[Severity, str], None]
 
-_LONGEST_START_S = 60.0
 _MB = 1e6
 _DISK_LOW = BY_FAULT[Fault.DISK_LOW]
 # Of a record all but its time.
 _AFTER_TIME = 8
-
-
-def start_of(started: str, wall: datetime.datetime, monotonic: float) -> float:
-    """Return when a run was started on the monotonic clock, s.
-
-    Args:
-        started: Wall-clock time of the start, ISO 8601.
-        wall: Wall-clock time now.
-        monotonic: Monotonic time now, s; also the answer where the wall clock was put right in between.
-    """
-    age = (wall - datetime.datetime.fromisoformat(started)).total_seconds()
-    return monotonic - age if 0.0 <= age <= _LONGEST_START_S else monotonic
 
 
 class Translator:
@@ -67,6 +56,9 @@ class Translator:
         self._echoes = Echoes(start)
         self._gauges = Gauges(start, run.settings.shield)
         self._incidents = Incidents(start)
+        self._story = Story(start)
+        self._ghost = Ghost(start, run.ghost)
+        self._interventions = Interventions(start)
         self._device = b""
 
     def opening(self) -> Iterator[Item]:
@@ -86,6 +78,9 @@ class Translator:
         yield from self._echoes.chunks(batch)
         yield from self._gauges.chunks(batch)
         yield from self._incidents.chunks(batch)
+        yield from self._story.chunks(batch)
+        yield from self._ghost.chunks(batch)
+        yield from self._interventions.chunks(batch)
         for report in batch.of(DEVICE_REPORT):
             if report.present and (known := bytes(report)[_AFTER_TIME:]) != self._device:
                 self._device = known

@@ -116,6 +116,7 @@ def run_of(flight: Flight, settings: Settings, controller: str) -> Run:
         viewer_url="",
         started="",
         controller=controller,
+        guidance=float(facts.get("guidance", 0.0)),
     )
 
 

@@ -110,7 +110,10 @@ def differences(flight: Flight, said: Said, ticks: Numbers) -> list[Difference]:
     for path in (_EVENTS, *_WORDS):
         lines = [Timed(line.t + flight.start, line.text) for line in flight.texts(path)]
         found.append(_words(path, lines, said, last))
+    version = int(flight.properties().get("schema", 1))
     for quantity in said.quantities:
+        if schema.SINCE.get(quantity, 1) > version:
+            continue
         recorded, now = _recorded(flight, quantity, last), said.series(quantity)
         if len(recorded.t):
             late = int(np.searchsorted(now.t, min(recorded.t[0], first + _LATE_S)))

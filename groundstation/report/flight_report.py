@@ -18,11 +18,12 @@ from groundstation.review.flight import Flight
 from groundstation.review.outcome import Outcome, outcome_of, radius_of
 from groundstation.review.recorded_series import recorded_series, thinned
 from groundstation.review.series import FlightSeries, lengths
+from groundstation.review.sights import origin
 from groundstation.training.mission import Mission
 
 # More samples a page's width does not show, and a mail does not like.
 _SHOWN = 1200
-_LANES = (lanes.MODE, lanes.PHASE, lanes.STAGE, lanes.GUARD, lanes.MAPPING, lanes.PRESET)
+_LANES = (lanes.MODE, lanes.PHASE, lanes.STAGE, lanes.GUARD, lanes.MAPPING, lanes.PRESET, lanes.INTERVENTION)
 
 
 class Summary(NamedTuple):
@@ -203,7 +204,13 @@ def _around(flight: Flight) -> Iterator[Plate]:
 
 def _tables(summary: Summary) -> list[Table]:
     flight, outcome, _ = summary
-    found = [tables.score(outcome), tables.lateness(tables.delays_of(flight)), tables.servo(flight)]
+    score = tables.score(outcome, str(flight.properties().get("par_from", "")))
+    found = [
+        score,
+        tables.lost(outcome, origin(flight)),
+        tables.lateness(tables.delays_of(flight)),
+        tables.servo(flight),
+    ]
     found += [tables.passivity(flight), tables.events(flight), *tables.settings(flight.settings)]
     return [table for table in found if table is not None and (table.rows or table.words)]
 

@@ -12,6 +12,8 @@ from groundstation.recording import schema
 from groundstation.report.document import Table
 from groundstation.review.flight import Flight, Numbers, Series
 from groundstation.review.outcome import Outcome
+from groundstation.training.score import NO_PAR, measure
+from groundstation.training.story import worth_telling
 
 DELAYS = {
     "vehicle's state (d₁)": schema.STATE_AGE,
@@ -75,13 +77,49 @@ def passivity(flight: Flight) -> Table:
     return Table("Passivity", words, ("", ""), rows)
 
 
-def score(outcome: Outcome) -> Table | None:
-    """Return the score part by part; None where there is none."""
+def score(outcome: Outcome, par_from: str) -> Table | None:
+    """Return the score part by part; None where there is none.
+
+    Args:
+        outcome: Of the flight.
+        par_from: Whose flight it is held against, in words, or "".
+    """
     if outcome.score is None:
         return None
-    rows = [(part.name, f"{100.0 * part.share:.0f}", part.formula) for part in outcome.score.parts]
-    rows.append(("score", f"{outcome.score.points:.0f}", "the mean of the parts"))
-    return Table("Score", "", ("part", "of 100", "how it comes about"), rows)
+    rows = [
+        (
+            part.name,
+            f"{part.points:.1f} of {part.weight:.1f}",
+            measure(part.value, part.unit),
+            measure(part.par, part.unit) if np.isfinite(part.par) else "–",
+            part.formula,
+        )
+        for part in outcome.score.parts
+    ]
+    rows.append(("score", f"{outcome.score.points:.1f} of 100", "", "", "the sum"))
+    return Table(
+        "Score",
+        f"Held against {par_from or NO_PAR}.",
+        ("part", "points", "reached", "par", "how it comes about"),
+        rows,
+    )
+
+
+def lost(outcome: Outcome, start: float) -> Table | None:
+    """Return where points were lost, what cost most first; None where there is no score.
+
+    Args:
+        outcome: Of the flight.
+        start: When the recording begins on the clock of the flight, s.
+    """
+    if outcome.judgement is None or outcome.score is None:
+        return None
+    rows = [
+        (f"{moment.t - start:.1f} s", f"−{moment.lost:.1f}", moment.part, moment.words)
+        for moment in worth_telling(outcome.judgement.story)
+    ]
+    words = "" if rows else "Nowhere."
+    return Table("Where points were lost", words, ("time", "points", "part", "what happened"), rows)
 
 
 def events(flight: Flight) -> Table:

@@ -18,6 +18,7 @@ _CUES = {
     "mismatch": schema.MISMATCH_CUE,
     "guard": schema.GUARD_CUE,
     "damping": schema.DAMPING_CUE,
+    "guidance": schema.GUIDANCE_CUE,
 }
 
 

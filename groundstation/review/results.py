@@ -16,6 +16,8 @@ from groundstation.review.listing import Entry
 
 # Safe to delete: it is made anew.
 CACHE = ".flights.json"
+# What was kept by other rules of scoring is read anew.
+_RULES = f"{__version__}, scoring 2"
 
 
 class Result(Struct, frozen=True):
@@ -62,10 +64,10 @@ def results_of(
         if known is None or (known.size, known.changed_ns, known.version) != (
             entry.size,
             changed_ns,
-            __version__,
+            _RULES,
         ):
             tell(f"reading {entry.path.name}")
-            known = _Kept(entry.size, changed_ns, __version__, _read(entry.path))
+            known = _Kept(entry.size, changed_ns, _RULES, _read(entry.path))
             kept[entry.path.name] = known
             new = True
         yield entry, known.result

@@ -7,6 +7,7 @@ import os
 import subprocess
 import sys
 import tempfile
+import threading
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
@@ -40,8 +41,31 @@ def run(asked: argparse.Namespace) -> int:
     if len(paths) == 1:
         if asked.out:
             raise InputError("--out keeps the comparison of two flights; name two.")
-        return review(paths[0], web=asked.web)
+        return tell(paths[0]) if asked.score else review(paths[0], asked.at, web=asked.web)
+    if asked.score or asked.at is not None:
+        raise InputError("--score and --at are for one flight; name one.")
     return compare(paths, asked.out, web=asked.web)
+
+
+def tell(path: Path) -> int:
+    """Print a flight's score with its parts, and where points were lost; return the exit code: 1 where not passed.
+
+    Raises:
+        InputError: There is no such recording, or it is of no mission.
+    """
+    from groundstation.review.flight import Flight
+    from groundstation.review.outcome import outcome_of
+    from groundstation.review.sights import origin
+    from groundstation.training.telling import told
+
+    flight = Flight(path)
+    outcome = outcome_of(flight)
+    if outcome.judgement is None:
+        raise InputError(f"{path}: {outcome.result}; there is nothing to be scored.")
+    facts = flight.properties()
+    print(f"{str(facts.get('mission', '')) or 'flight'}: {outcome.result}")
+    print("\n".join(told(outcome.judgement, str(facts.get("par_from", "")), origin(flight))))
+    return 1 if outcome.completed is False else 0
 
 
 def compare(paths: Sequence[Path], out: Path | None, *, web: bool = False) -> int:
@@ -70,12 +94,18 @@ def compare(paths: Sequence[Path], out: Path | None, *, web: bool = False) -> in
 
 
 def review(
-    log: Path, *, web: bool = False, environment: Mapping[str, str] = os.environ, spawn: Spawn | None = None
+    log: Path,
+    at: float | None = None,
+    *,
+    web: bool = False,
+    environment: Mapping[str, str] = os.environ,
+    spawn: Spawn | None = None,
 ) -> int:
     """Open a recording in the viewer and wait until it is closed.
 
     Args:
         log: The recording. One that did not end properly is put in order first.
+        at: Time of the recording to begin at, s; None for where the viewer begins.
         web: In a browser on this machine instead of a window.
         environment: Tells whether there is a display.
         spawn: Runs a command and returns its exit code.
@@ -97,7 +127,12 @@ def review(
         page_port = free_tcp_port()
         command += ["--serve-web", "--web-viewer-port", str(page_port)]
         page = page_address(page_port, f"rerun+http://127.0.0.1:{port}/proxy")
-        sys.stderr.write(f"{log.name} is at {page}\nCtrl-C ends.\n")
+        # A page cannot be told from here where to begin.
+        moment = "" if at is None else f"The moment is at {at:.1f} s on its time panel.\n"
+        sys.stderr.write(f"{log.name} is at {page}\n{moment}Ctrl-C ends.\n")
+    elif at is not None:
+        # The viewer has no option for it; it is told once it has loaded the file.
+        threading.Thread(target=_go_to, args=(port, at), name="jump", daemon=True).start()
     return (spawn or _run)([*command, *(str(part.resolve()) for part in parts)])
 
 
@@ -111,6 +146,12 @@ def _put_in_order(log: Path) -> None:
         return
     sys.stderr.write(f"{log.name} did not end properly: putting it in order.\n")
     mend(log)
+
+
+def _go_to(port: int, at: float) -> None:
+    from groundstation.review.jump import go_to
+
+    go_to(port, at)
 
 
 def _run(command: Sequence[str]) -> int:

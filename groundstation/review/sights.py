@@ -24,6 +24,14 @@ def sights(flight: Flight) -> Iterator[VehicleSight | HandSight]:
     yield from heapq.merge(_vehicle(flight), _hand(flight), key=lambda sight: sight.t)
 
 
+def origin(flight: Flight) -> float:
+    """Return when the recording begins on the clock of its sights, s."""
+    try:
+        return flight.start
+    except InputError:
+        return 0.0
+
+
 def words_at(flight: Flight, lane: lanes.Lane, t: Numbers) -> list[str]:
     """Return a lane's word at each time, "" before its first."""
     changes = flight.states(lane)

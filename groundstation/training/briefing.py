@@ -7,21 +7,12 @@ import textwrap
 from collections.abc import Iterator
 from pathlib import Path
 
-from groundstation.training.events import (
-    BatteryLeft,
-    Delay,
-    DeviceLoss,
-    Event,
-    GpsLoss,
-    GustNow,
-    LinkLoss,
-    Loss,
-    WindChange,
-)
+from groundstation.training.events import Event, GustNow, WindChange
+from groundstation.training.happening import words
 from groundstation.training.mission import Mission
 from groundstation.training.par import par_in
 from groundstation.training.reference import load_reference, reference_fault
-from sim.scenario import Air, Point
+from sim.scenario import Point
 
 _HEAD = 9
 # More obstacles than these are counted, not named.
@@ -62,7 +53,7 @@ def par_words(mission: Mission, path: Path) -> str:
 
 def event_words(event: Event) -> str:
     """Return when something happens, and what, in words."""
-    return f"{_when(event)}: {_what(event)}"
+    return f"{_when(event)}: {words(event)}"
 
 
 def _block(head: str, sentences: list[str], width: int) -> Iterator[str]:
@@ -84,10 +75,10 @@ def _asked(mission: Mission) -> Iterator[str]:
 
 
 def _place(at: Point, radius: float, hold_s: float, yaw_deg: float | None) -> str:
-    words = f"{_coordinates(at)} within {radius:g} m"
+    place = f"{_coordinates(at)} within {radius:g} m"
     if yaw_deg is not None:
-        words += f", nose to {_compass(yaw_deg)}"
-    return f"{words}, stay {hold_s:g} s" if hold_s else words
+        place += f", nose to {_compass(yaw_deg)}"
+    return f"{place}, stay {hold_s:g} s" if hold_s else place
 
 
 def _criteria(mission: Mission) -> Iterator[str]:
@@ -109,9 +100,9 @@ def _criteria(mission: Mission) -> Iterator[str]:
 def _world(mission: Mission) -> Iterator[str]:
     yield f"{mission.vehicle.airframe}, model {mission.vehicle.model}"
     if any(mission.wind.mean) or mission.wind.turbulence.intensity:
-        yield f"wind {_air(mission.wind.mean)}{_turbulent(mission.wind.turbulence.intensity)}"
+        yield words(WindChange(velocity=mission.wind.mean, turbulence=mission.wind.turbulence.intensity))
     for gust in mission.wind.gust:
-        yield f"a gust of {_air(gust.velocity)}, {gust.start_s:g} s after take-off"
+        yield event_words(GustNow(at_s=gust.start_s, velocity=gust.velocity, duration_s=gust.duration_s))
     if len(mission.obstacle) > _NAMED:
         yield f"{len(mission.obstacle)} obstacles"
     elif mission.obstacle:
@@ -124,41 +115,6 @@ def _when(event: Event) -> str:
     if not event.leg:
         return f"{event.at_s:g} s after take-off" if event.at_s else "from take-off on"
     return f"{event.at_s:g} s after point {event.leg}" if event.at_s else f"at point {event.leg}"
-
-
-def _what(event: Event) -> str:
-    match event:
-        case WindChange(velocity=velocity, turbulence=turbulence):
-            return f"the wind is {_air(velocity)}{_turbulent(turbulence)}"
-        case GustNow(velocity=velocity, duration_s=duration):
-            return f"a gust of {_air(velocity)}, {duration:g} s long"
-        case Delay(round_trip_s=delay, jitter_s=jitter):
-            return f"the link is late by {delay:g} s, there and back" + (
-                f", ± {jitter:g} s" if jitter else ""
-            )
-        case Loss(share=share):
-            return f"the link loses {100.0 * share:.0f} % of its frames"
-        case LinkLoss(duration_s=duration):
-            return f"the link is silent for {duration:g} s"
-        case DeviceLoss(duration_s=duration):
-            return f"the haptic device is gone for {duration:g} s"
-        case BatteryLeft(remaining=remaining):
-            return f"the battery falls to {100.0 * remaining:.0f} %"
-        case GpsLoss(duration_s=duration):
-            return f"there is no GPS for {duration:g} s"
-
-
-def _air(velocity: Air) -> str:
-    """Say how fast the air moves, and from where it comes as people say it."""
-    east, north, _ = velocity
-    speed = math.hypot(*velocity)
-    if not math.hypot(east, north):
-        return f"{speed:.1f} m/s"
-    return f"{speed:.1f} m/s from the {_compass(math.degrees(math.atan2(-north, -east)))}"
-
-
-def _turbulent(intensity: float) -> str:
-    return f", turbulent (σ_w {intensity:g} m/s)" if intensity else ""
 
 
 def _compass(yaw_deg: float) -> str:

@@ -99,7 +99,7 @@ def _way_by_hand(flight: Flight) -> Numbers:
     """
     t, positions = flight.series(schema.POSITION)
     coupled = np.array([word in COUPLED for word in words_at(flight, lanes.PHASE, t)], dtype=bool)
-    known = np.isfinite(positions[:, :3]).all(axis=1)
+    known = np.isfinite(positions[:, :3].sum(axis=1))
     places = np.flatnonzero(coupled & known)
     if not len(places):
         raise InputError(

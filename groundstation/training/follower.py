@@ -2,15 +2,31 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 from groundstation.bus import Bus
 from groundstation.console import Snapshot
-from groundstation.messages import HANDLE, MISSION_PROGRESS, PILOT_STATE, VEHICLE_STATE, VEHICLE_STATUS
+from groundstation.messages import (
+    EVENT_TEXT,
+    HANDLE,
+    MISSION_PROGRESS,
+    PART_TEXT,
+    PILOT_STATE,
+    POINTS_LOST,
+    VEHICLE_STATE,
+    VEHICLE_STATUS,
+    PointsLost,
+    fit,
+)
 from groundstation.training.attempts import Attempts
 from groundstation.training.conducting import Conductor
 from groundstation.training.director import Director
-from groundstation.training.measurer import Measurer
+from groundstation.training.judgement import Judgement, judgement_of
+from groundstation.training.measurer import HandSight, Measurer, VehicleSight
+from groundstation.training.measures import Measures
 from groundstation.training.mission import Mission
 from groundstation.training.sights import Sights
+from groundstation.training.story import Moment
 from sim.airframe import load_airframe
 
 
@@ -20,15 +36,19 @@ class MissionFollower:
     Args:
         mission: What is flown.
         bus: Where the records come from and the progress goes.
+        par: What the flight is held against; None where nobody has flown it for reference.
 
     Attributes:
         attempts: The run's flights.
+        judgement: Of the last that landed; None before.
         complete: No record was missed: held up for seconds, what it says may differ from what the recording says.
     """
 
-    def __init__(self, mission: Mission, bus: Bus) -> None:
+    def __init__(self, mission: Mission, bus: Bus, par: Measures | None = None) -> None:
         self.attempts = Attempts(mission, load_airframe(mission.vehicle.airframe).radius)
+        self.judgement: Judgement | None = None
         self.complete = True
+        self._par = par
         self._sights = Sights()
         self._states = bus.subscriber(VEHICLE_STATE)
         self._statuses = bus.subscriber(VEHICLE_STATUS)
@@ -36,6 +56,7 @@ class MissionFollower:
         self._handles = bus.subscriber(HANDLE)
         self._conductor = Conductor(mission, bus)
         self._progress = bus.publisher(MISSION_PROGRESS)
+        self._losses = bus.publisher(POINTS_LOST)
 
     @property
     def measurer(self) -> Measurer:
@@ -56,8 +77,7 @@ class MissionFollower:
     def finish(self) -> None:
         """Take note of what is left, when no more records come."""
         self._read()
-        for sight in self._sights.rest():
-            self.attempts.show(sight)
+        self._show(self._sights.rest())
 
     def _read(self) -> None:
         # The order matters: see `Sights`.
@@ -66,5 +86,19 @@ class MissionFollower:
         pilots = list(self._pilots.drain())
         handles = list(self._handles.drain())
         self.complete &= len(handles) < HANDLE.depth
-        for sight in self._sights.take(states, statuses, pilots, handles):
+        self._show(self._sights.take(states, statuses, pilots, handles))
+
+    def _show(self, sights: Iterable[VehicleSight | HandSight]) -> None:
+        landed = len(self.attempts.landed)
+        for sight in sights:
             self.attempts.show(sight)
+        if len(self.attempts.landed) > landed:
+            self.judgement = judgement_of(self.attempts.landed[-1], self._par)
+            self._tell(self.judgement.story)
+
+    def _tell(self, story: Iterable[Moment]) -> None:
+        """Tell the bus, and so the recording, where points were lost."""
+        for moment in story:
+            loss = PointsLost(t=moment.t, until=moment.until, points=moment.lost, position=moment.place)
+            loss.part, loss.text = fit(moment.part, PART_TEXT), fit(moment.words, EVENT_TEXT)
+            self._losses.send(loss)

@@ -18,12 +18,14 @@ class Judgement(NamedTuple):
         score: None where the mission leads nowhere.
         shortcomings: In words, all that keeps it from being passed.
         story: Where points were lost, what cost most first.
+        took_off_t: When it took off, s on the clock of the flight.
     """
 
     measures: Measures
     score: Score | None
     shortcomings: tuple[str, ...]
     story: tuple[Moment, ...]
+    took_off_t: float
 
     @property
     def passed(self) -> bool:
@@ -41,4 +43,4 @@ def judgement_of(measurer: Measurer, par: Measures | None) -> Judgement:
     measures = measurer.measures()
     score = score_of(measurer.director.mission, measures, par)
     story = story_of(measurer, score) if score else ()
-    return Judgement(measures, score, shortcomings(measurer.director, score), story)
+    return Judgement(measures, score, shortcomings(measurer.director, score), story, measurer.took_off_t)

@@ -25,13 +25,13 @@ class Grade(NamedTuple):
 
     Attributes:
         spare: Room between hull and obstacle beyond the guard's margin, m.
-        count: Poles, gates, or legs of the way.
+        things: Poles, gates, or legs of the way.
         turn: Largest turn from one leg to the next, rad.
         wind: m/s, from a side that the seed chooses; `turbulence` is its σ_w.
     """
 
     spare: float
-    count: int
+    things: int
     turn: float
     wind: float = 0.0
     turbulence: float = 0.0
@@ -55,7 +55,7 @@ def slalom(dice: random.Random, grade: Grade, room: float) -> Layout:
     poles: list[Obstacle] = []
     route: list[Waypoint] = []
     x, y = 2.0, 0.0
-    for number in range(1, grade.count + 1):
+    for number in range(1, grade.things + 1):
         radius = round(dice.uniform(0.08, 0.2), 2)
         aside = 1.3 * (room + radius)
         x, y = x + 3.0 * aside + dice.uniform(0.5, 1.5), dice.uniform(-0.2, 0.2)
@@ -79,8 +79,8 @@ def gates(dice: random.Random, grade: Grade, room: float) -> Layout:
     lowest = max(0.5 * high + 0.3, 1.5)
     gates: list[Obstacle] = []
     points = [(0.0, 0.0, ALTITUDE_M)]
-    headings = _headings(dice, grade, grade.count + 1)
-    for number in range(grade.count):
+    headings = _headings(dice, grade, grade.things + 1)
+    for number in range(grade.things):
         x, y, z = points[-1]
         far = dice.uniform(2.5, 4.5) + wide
         z = min(max(dice.uniform(z - 0.5, z + 0.5), lowest), lowest + 1.5, z + 0.2 * far)
@@ -100,15 +100,15 @@ def gates(dice: random.Random, grade: Grade, room: float) -> Layout:
 
 def forest(dice: random.Random, grade: Grade, room: float) -> Layout:
     """A winding way, and trees as near to it as they may stand."""
-    points = _bending(dice, grade, (0.0, 0.0), grade.count + 1, room + 3.0)
+    points = _bending(dice, grade, (0.0, 0.0), grade.things + 1, room + 3.0)
     route = [
         Waypoint(_point(x, y, ALTITUDE_M), radius=round(0.8 + 0.3 * room, 2), say="On between the trees.")
         for x, y in points[1:-1]
     ]
     empty = Mission(1, "f", "f", route=tuple(route), target=Target(_point(*points[-1], ALTITUDE_M)))
     trees: list[Obstacle] = []
-    for _ in range(12 * grade.count):
-        if len(trees) == 3 * grade.count:
+    for _ in range(12 * grade.things):
+        if len(trees) == 3 * grade.things:
             break
         (x, y), (east, north) = _along(dice, points)
         radius = round(dice.uniform(0.15, 0.35), 2)
@@ -127,7 +127,7 @@ def corridor(dice: random.Random, grade: Grade, room: float) -> Layout:
 
     Its walls are the middle line moved aside: where it bends by φ the corner lies 1/cos(φ/2) as far out.
     """
-    bends = max(grade.count - 2, 1)
+    bends = max(grade.things - 2, 1)
     points = [(2.0, 0.0), *_bending(dice, grade, (4.0 + 2.0 * room, 0.0), bends + 1, 3.0 + 2.0 * room)]
     walls = [
         wall

@@ -21,6 +21,8 @@ ROOMY_M = 0.5
 UNHURRIED = 0.5
 # The unit of what is a share of the whole.
 SHARE = "share"
+# What the missing part of an unfinished mission costs, beside the parts.
+UNFINISHED = "unfinished"
 NO_PAR = "what is usual: nobody has flown this mission for reference"
 
 
@@ -164,7 +166,7 @@ def _part(yard: Yardstick, mission: Mission, measures: Measures, par: Measures |
     good, poor = _bounds(yard, mission, known)
     # Straight from good to poor, whichever of them is the larger number.
     quality = _bounded((poor - value) / (poor - good))
-    words = f"all at {measure(good, yard.unit)}{_side(yard)}, none at {measure(poor, yard.unit)}"
+    words = f"all at {measure(good, yard.unit)}{_side(good, yard)}, none at {measure(poor, yard.unit)}"
     if yard.part == "clearance":
         words += " or with a collision"
         quality = 0.0 if measures.collisions else quality
@@ -208,11 +210,13 @@ def measure(value: float, unit: str) -> str:
         return "not known"
     if unit == SHARE:
         return f"{value:.0%} missed"
-    return f"{value:.3g} {unit}".rstrip()
+    return f"{value:.3g} {unit}".rstrip().replace("-", "−")
 
 
-def _side(yard: Yardstick) -> str:
-    return " or more" if yard.rises else " or less"
+def _side(good: float, yard: Yardstick) -> str:
+    if yard.rises:
+        return " or more"
+    return " or less" if good > 0.0 else ""
 
 
 def _bounded(share: float) -> float:

@@ -14,14 +14,13 @@ import numpy as np
 
 from groundstation.frames import Vector3
 from groundstation.training.measurer import HandRow, Measurer, VehicleRow
-from groundstation.training.score import Part, Score
+from groundstation.training.score import UNFINISHED, Part, Score
 from groundstation.training.smoothness import RATE_HZ, evenly, parted
 
 # A guard that changes less than this lets pass what the hand asks for, m/s.
 _GUARDING_MPS = 0.05
 # The speed is looked at through a window this long, so that it is motion and not noise, s.
 _WINDOW_S = 0.4
-_UNFINISHED = "unfinished"
 
 # What cost less is not worth a line, points.
 _LEAST = 0.5
@@ -67,7 +66,7 @@ def story_of(measurer: Measurer, score: Score) -> tuple[Moment, ...]:
     unflown = math.fsum(part.weight * (part.quality - part.share) for part in score.parts)
     if unflown > 0.0:
         words = f"{score.reached:.0%} of the mission's points were reached"
-        moments.append(_at_the_end(measurer, _UNFINISHED, unflown, words))
+        moments.append(_at_the_end(measurer, UNFINISHED, unflown, words))
     return tuple(sorted(moments, key=lambda moment: (-moment.lost, moment.t)))
 
 

@@ -6,7 +6,6 @@ import json
 import math
 import sys
 import time
-from collections.abc import Iterator
 from typing import TextIO
 
 import msgspec
@@ -18,10 +17,9 @@ from groundstation.status_line import StatusLine
 from groundstation.training.director import Director
 from groundstation.training.judgement import Judgement, judgement_of
 from groundstation.training.measurer import Measurer
-from groundstation.training.score import NO_PAR, Score, measure
-from groundstation.training.story import Moment, clock, worth_telling
-
-_NAME = 15
+from groundstation.training.score import Score
+from groundstation.training.story import Moment
+from groundstation.training.telling import NAME, told
 
 
 class Narrator:
@@ -72,7 +70,7 @@ def summary(
         "max_force_n": _rounded(figures.max_force, 3),
         "score": _score(judgement.score, run.par_from),
         "measures": msgspec.to_builtins(judgement.measures),
-        "story": [_moment(moment, measurer) for moment in judgement.story],
+        "story": [_moment(moment, judgement.took_off_t) for moment in judgement.story],
         "servo": {
             "rate_hz": _rounded(report.rate, 1),
             "ticks": int(report.ticks),
@@ -93,24 +91,9 @@ def summarise(run: Run, measurer: Measurer, servo: ServoReport | None, failure: 
         print(json.dumps(figures))
     else:
         print(_table(figures))
-        print("\n".join(told(judgement, measurer, run.par_from)))
+        print("\n".join(told(judgement, run.par_from)))
     sys.stdout.flush()
     return 0 if figures["completed"] else 1
-
-
-def told(judgement: Judgement, measurer: Measurer, par_from: str) -> Iterator[str]:
-    """Yield a score in lines for people: its parts with what each was held against, and where points were lost."""
-    score = judgement.score
-    if score is None:
-        return
-    yield f"{'score':<{_NAME}} {score.points:.1f} of 100, held against {par_from or NO_PAR}"
-    for part in score.parts:
-        par = f", par {measure(part.par, part.unit)}" if math.isfinite(part.par) else ""
-        reached = f"{part.points:4.1f} of {part.weight:4.1f}"
-        yield f"  {part.name:<{_NAME - 2}} {reached}  {measure(part.value, part.unit)}{par}; {part.formula}"
-    for index, moment in enumerate(worth_telling(judgement.story)):
-        t = clock(moment.t - measurer.took_off_t)
-        yield f"{'' if index else 'points lost':<{_NAME}} {-moment.lost:5.1f} at {t}, {moment.part}: {moment.words}"
 
 
 def _score(score: Score | None, par_from: str) -> dict[str, object] | None:
@@ -131,10 +114,10 @@ def _score(score: Score | None, par_from: str) -> dict[str, object] | None:
     return {"points": score.points, "par_from": par_from, "parts": parts}
 
 
-def _moment(moment: Moment, measurer: Measurer) -> dict[str, object]:
+def _moment(moment: Moment, took_off_t: float) -> dict[str, object]:
     return {
         "part": moment.part,
-        "since_takeoff_s": _rounded(moment.t - measurer.took_off_t, 2),
+        "since_takeoff_s": _rounded(moment.t - took_off_t, 2),
         "lost": moment.lost,
         "words": moment.words,
         "position_m": list(moment.place),
@@ -167,7 +150,7 @@ def _table(figures: dict[str, object]) -> str:
         ("recording", logs["rrd"] or "none"),
         ("MAVLink log", logs["tlog"] or "none"),
     )
-    return "\n".join(f"{name:<{_NAME}} {value}" for name, value in rows)
+    return "\n".join(f"{name:<{NAME}} {value}" for name, value in rows)
 
 
 def _metres(length: object) -> str:

@@ -7,6 +7,8 @@ out at a steady rate while the screen turns; a screen that hangs is a stick gone
 from __future__ import annotations
 
 import asyncio
+import datetime
+import gc
 import importlib
 import signal
 import time
@@ -20,12 +22,17 @@ from textual.screen import ModalScreen, Screen
 
 from groundstation.console import Snapshot
 from groundstation.messages import CommandKind, FlightMode, Severity
-from groundstation.run import Run
+from groundstation.progress.desk import Desk
+from groundstation.progress.keeper import Keeper
+from groundstation.progress.skills import Advice
+from groundstation.run import Run, start_of
 from groundstation.training.coach import LiveCoach
-from groundstation.training.director import Director
+from groundstation.training.director import Director, Stage
 from groundstation.training.follower import MissionFollower
 from groundstation.training.guide import Guide, guide_of
-from groundstation.tui.acts import ACTS, URGENT, Act, coupled, in_air
+from groundstation.training.score import Score, score_of
+from groundstation.training.workload import Workload
+from groundstation.tui.acts import ACTS, URGENT, Act, armed, coupled, in_air
 from groundstation.tui.alarms import Alarms
 from groundstation.tui.alerts import conditions
 from groundstation.tui.checks import red
@@ -35,6 +42,7 @@ from groundstation.tui.everywhere import KEYS
 from groundstation.tui.frame import Frame, Reader, Supervisor, workspace
 from groundstation.tui.guarding import GuardWatch
 from groundstation.tui.hand import Hand, StickSender
+from groundstation.tui.instructing import Instructing
 from groundstation.tui.keepalive import Keepalive
 from groundstation.tui.milestones import Milestones
 from groundstation.tui.pace import PaintPace
@@ -48,9 +56,12 @@ from groundstation.tui.theme import THEME, THEMES, next_theme
 from groundstation.tui.track import History, Track
 from groundstation.tui.viewer import Viewer
 from groundstation.tui.widgets.stick import YAW, stays
+from groundstation.tui.wish import Wish
 
 _POLL_S = 0.1
 _LOOK_S = 0.5
+_JUDGE_S = 1.0
+_AFTER_PAGE_S = 0.3
 
 
 def _everywhere() -> list[BindingType]:
@@ -85,6 +96,10 @@ class FlightApp(Commanding):
         stick: Takes the on-screen stick's deflection, or None where another device is in use.
         follower: Follows the mission, if there is one.
         coach: Tells the trainee what to do instead, if there is one.
+        desk: Knows the pilots and the course; the one of the run's folder where none is given.
+        keeper: Keeps the flights that land, if they are anybody's.
+        instructing: Instructing | None = None,
+        on_workload: Keeps what was answered after a flight.
         clock: Monotonic seconds, the bus's clock.
     """
 
@@ -102,6 +117,10 @@ class FlightApp(Commanding):
         *,
         follower: MissionFollower | None = None,
         coach: LiveCoach | None = None,
+        desk: Desk | None = None,
+        keeper: Keeper | None = None,
+        instructing: Instructing | None = None,
+        on_workload: Callable[[Workload], None] = lambda _: None,
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
         super().__init__(run, console)
@@ -114,9 +133,17 @@ class FlightApp(Commanding):
         self._track, self._history = Track(), History()
         self._alarms, self._pace = Alarms(), PaintPace(run.settings.rates.screen)
         self._started = self._snapshot.t
-        self._next_poll = self._next_look = 0.0
+        self._start = start_of(run.started, datetime.datetime.now().astimezone(), clock())
+        self._next_poll = self._next_look = self._next_score = 0.0
         self._keepalive = Keepalive(self._send_stick, clock)
         self._follower, self._coach = follower, coach
+        self.desk, self._keeper = desk or Desk(run.recording.parent), keeper
+        self.best = self.desk.best(run.pilot, run.mission, run.par) if run.mission else None
+        self._on_workload = on_workload
+        self.advice: Advice | None = None
+        self.wish: Wish | None = None
+        self._instructing = instructing or Instructing(None)
+        self._score: Score | None = None
         self._flight = FlightScreen(self.hand if stick is not None else None)
         self._milestones, self._viewer = Milestones(), Viewer()
         self._latest: Frame | None = None
@@ -146,6 +173,8 @@ class FlightApp(Commanding):
         snapshot = self._snapshot = self._reader.snapshot()
         if self._follower is not None:
             self._follower.look(snapshot)
+            self._judge(self._follower, snapshot.t)
+            self._keep()
         polled = snapshot.t >= self._next_poll
         if polled:
             self._next_poll = snapshot.t + _POLL_S
@@ -153,6 +182,8 @@ class FlightApp(Commanding):
         for note in self._answers.take(snapshot):
             severity = "error" if note.severity is Severity.ALARM else "warning"
             self.notify(note.text, severity=severity, timeout=6.0, markup=False)
+        for refusal in self._instructing.refusals():
+            self.notify(refusal, severity="warning", timeout=6.0, markup=False)
         stale_s = self._flight_run.settings.safety.state_stale_s
         if snapshot.vehicle is not None and snapshot.vehicle.valid:
             east, north, up, _ = snapshot.vehicle.position
@@ -171,6 +202,22 @@ class FlightApp(Commanding):
             self._next_look = snapshot.t + _LOOK_S
             self._look_around(frame)
 
+    def _judge(self, follower: MissionFollower, t: float) -> None:
+        """Work out the score so far; it takes some milliseconds, so not in every frame."""
+        if t >= self._next_score:
+            self._next_score = t + _JUDGE_S
+            measurer = follower.measurer
+            self._score = score_of(measurer.director.mission, measurer.measures(), self._flight_run.par)
+
+    def _keep(self) -> None:
+        """Have what has landed kept; once it is, look what comes next."""
+        if self._keeper is None:
+            return
+        for words in self._keeper.look():
+            self.notify(words, severity="warning", timeout=10.0, markup=False)
+        if self._keeper.fresh():
+            self.advice = self.desk.report(self.pilot).standing.next
+
     def _look_around(self, frame: Frame) -> None:
         """Show the page that is due, but never in place of what the operator looks at."""
         if failure := self._viewer.failure():
@@ -182,6 +229,33 @@ class FlightApp(Commanding):
     def _page(self) -> Page | None:
         """The page that stands over the flight, if one does."""
         return next((screen for screen in self.screen_stack if isinstance(screen, Page)), None)
+
+    @property
+    def pilot(self) -> str:
+        """Who flies."""
+        return self._flight_run.pilot
+
+    def action_next(self) -> None:
+        """Fly what the school recommends."""
+        if self.advice is None:
+            self.action_page("school")
+        else:
+            self.fly_next(Wish(self.advice.mission, self.pilot))
+
+    def fly_next(self, wish: Wish) -> None:
+        """Leave this run and have the next one begin with what is wished: on the ground, and simulated only."""
+        mission, director = self._flight_run.mission, self.director
+        if not self._flight_run.simulated:
+            words = "A real vehicle is flown as it was connected: leave with q, and choose the mission then."
+            self.notify(words, severity="warning", timeout=6.0)
+        elif armed(self._snapshot) or in_air(self._snapshot) or coupled(self._snapshot):
+            self.notify("Land and disarm first.", severity="warning", timeout=4.0)
+        elif mission and director and director.stage is Stage.WAITING and wish == (mission.name, self.pilot):
+            # It is this one that waits to be flown.
+            self.action_fly()
+        else:
+            self.wish = wish
+            self._leave()
 
     @property
     def director(self) -> Director | None:
@@ -205,6 +279,8 @@ class FlightApp(Commanding):
             track=self._track,
             history=self._history,
             figures=director.figures if director is not None else None,
+            score=self._score,
+            judgement=self._follower.judgement if self._follower is not None else None,
             guide=guide,
             coaching=coaching,
             alarms=self._alarms,
@@ -247,15 +323,30 @@ class FlightApp(Commanding):
 
     def action_fly(self) -> None:
         """Go back to the flight."""
+        if self.screen is self._flight:
+            return
         while self.screen is not self._flight:
             self.pop_screen()
+        if not coupled(self._snapshot):
+            # What a page leaves is looked through where 0.2 s harm nobody; by itself it hardly is, see `running`.
+            self.set_timer(_AFTER_PAGE_S, gc.collect)
 
-    def action_review(self) -> None:
-        """Open the recording in the viewer."""
+    def review_at(self, t: float) -> None:
+        """Open the recording in the viewer at a moment, s on the clock of the flight."""
+        self.action_review(max(t - self._start, 0.0))
+
+    def take_workload(self, workload: Workload | None) -> None:
+        """Keep how hard it was, unless that was not said."""
+        if workload is not None:
+            self._on_workload(workload)
+            self.notify(f"Kept: workload {workload.raw:.0f} of 100.", timeout=3.0)
+
+    def action_review(self, at: float | None = None) -> None:
+        """Open the recording in the viewer, at a time of the recording, s, or at its beginning."""
         if coupled(self._snapshot) or in_air(self._snapshot):
             self.notify("Land first: the viewer takes its time of this machine.", severity="warning")
             return
-        self._viewer.open(self._flight_run.recording)
+        self._viewer.open(self._flight_run.recording, at)
         self.notify("The viewer is starting.", timeout=3.0)
 
     def _end(self, code: int) -> None:
@@ -313,7 +404,7 @@ class FlightApp(Commanding):
             yield SystemCommand(title, words, lambda preset=preset: self._choose_preset(preset))
         for page in PAGES:
             yield SystemCommand(
-                f"{page.label} ({page.key.upper()})",
+                f"{page.label} ({page.shown})",
                 page.explains,
                 lambda name=page.name: self.action_page(name),
             )
@@ -324,6 +415,7 @@ class FlightApp(Commanding):
         yield SystemCommand("Bell on/off (b)", "The bell rings for alarms.", self.action_mute)
         yield SystemCommand("Next theme (ctrl+t)", "Dark, light, high contrast.", self.action_next_theme)
         yield from self._flight.commands()
+        yield from self._instructing.commands()
         yield SystemCommand("Help (?)", "All keys.", self.action_help)
         yield SystemCommand("Quit (q)", "Asks first while the vehicle is in the air.", self.action_quit)
 

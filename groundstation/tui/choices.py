@@ -98,6 +98,7 @@ CUES: dict[Cue, Choice] = {
     Cue.MISMATCH: _cue(Cue.MISMATCH, "3", "Force where it does not fly as told."),
     Cue.GUARD: _cue(Cue.GUARD, "4", "Force where the guard changes the command."),
     Cue.DAMPING: _cue(Cue.DAMPING, "5", "Resistance to the handle's motion."),
+    Cue.GUIDANCE: _cue(Cue.GUIDANCE, "6", "Pull to the mission's way, while you learn."),
 }
 CHOICES = (
     Choice("mapping", _K.MAPPING, "m", "Mapping", "Rate or position.", _other),

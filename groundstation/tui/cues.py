@@ -46,8 +46,8 @@ class Part(NamedTuple):
         return "–" if not self.weighted else "●" if self.on else "○"
 
 
-def parts(pilot: PilotState) -> tuple[Part, ...]:
-    """Return all cues, in the order of their keys."""
+def parts(pilot: PilotState, *, guided: bool = False) -> tuple[Part, ...]:
+    """Return all cues, in the order of their keys; that of guidance only where the hand is guided."""
     weights = PRESETS[Preset(pilot.preset)].weights
     norms = {
         # The record has equation (5) as it stands, the others as they are weighted.
@@ -56,10 +56,11 @@ def parts(pilot: PilotState) -> tuple[Part, ...]:
         Cue.MISMATCH: math.hypot(*pilot.mismatch),
         Cue.GUARD: math.hypot(*pilot.guard),
         Cue.DAMPING: math.hypot(*pilot.damping),
+        Cue.GUIDANCE: math.hypot(*pilot.guidance),
     }
     found: list[Part] = []
     for (cue, choice), weight in zip(CUES.items(), weights, strict=True):
         takes_part = bool(pilot.cues & cue) and weight > 0.0
         norm = norms[cue] if takes_part else 0.0
         found.append(Part(cue, choice.key, norm, bool(pilot.cues & cue), weight > 0.0))
-    return tuple(found)
+    return tuple(part for part in found if guided or part.cue is not Cue.GUIDANCE)

@@ -36,15 +36,13 @@ def title(guide: Guide) -> str:
 
 
 def whereabouts(guide: Guide, way: Way) -> str:
-    """Say how far the goal is and where: 3.2 m, 40° left, 1.0 m up, then stay 2 s."""
+    """Say how far the goal is and where: 3.2 m, 40° left, 1.0 m up."""
     assert guide.goal is not None
     words = [quantity(math.hypot(way.ahead, way.left) if guide.landing else way.distance, "m", 1)]
     if math.isfinite(way.bearing):
         words.append(_bearing(way.bearing))
     if not guide.landing and abs(way.up) > 0.5 * guide.goal.radius:
         words.append(f"{quantity(abs(way.up), 'm', 1)} {'up' if way.up > 0.0 else 'down'}")
-    if guide.hold_s:
-        words.append(f"then stay {guide.hold_s:g} s")
     return ", ".join(words)
 
 
@@ -55,7 +53,9 @@ def steering(frame: Frame, guide: Guide, way: Way) -> str:
     if guide.landing and math.hypot(way.ahead, way.left) <= goal.radius:
         return f"Over the pad: {_key(frame, 's', 'lower the handle')} brings it down, l lands."
     if way.distance > goal.radius or guide.landing:
-        return f"{whereabouts(guide, way)}. {_push(frame, guide, way)}"
+        # What comes later stands last: where there is little room it is cut.
+        then = f" Then stay {guide.hold_s:g} s." if guide.hold_s else ""
+        return f"{whereabouts(guide, way)}. {_push(frame, guide, way)}{then}"
     if way.turn:
         side, key = ("left", "a") if way.turn > 0.0 else ("right", "d")
         return (

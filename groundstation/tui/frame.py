@@ -12,6 +12,8 @@ from groundstation.messages import CommandKind, PilotState, Record
 from groundstation.run import Run
 from groundstation.training.director import Figures
 from groundstation.training.guide import Guide
+from groundstation.training.judgement import Judgement
+from groundstation.training.score import Score
 from groundstation.tui.acts import PILOT_STALE_S
 from groundstation.tui.alarms import Alarms
 from groundstation.tui.hand import Share4
@@ -63,6 +65,8 @@ class Frame:
         figures: What the mission has come to so far, or None without one.
         guide: How far the mission is and what is next, or None without one.
         coaching: What the trainee does wrong and should do instead, or "".
+        score: What that is worth so far, as of a second ago; None where there is nothing to be judged by.
+        judgement: Of the last flight that landed, or None before.
         alarms: What is wrong, as of the frame before.
         paint_hz: Frames painted a second, as the terminal takes them.
     """
@@ -80,6 +84,8 @@ class Frame:
     figures: Figures | None = None
     guide: Guide | None = None
     coaching: str = ""
+    score: Score | None = None
+    judgement: Judgement | None = None
     alarms: Alarms = field(default_factory=Alarms)
     paint_hz: float = math.nan
 
@@ -87,6 +93,11 @@ class Frame:
     def now(self) -> float:
         """The snapshot's time, s."""
         return self.snapshot.t
+
+    @property
+    def guided(self) -> bool:
+        """The hand is guided to the mission's way."""
+        return self.run.guidance > 0.0
 
     def age(self, record: Record | None) -> float:
         """Return a record's age, s; infinite where there is none."""

@@ -52,11 +52,12 @@ def as_told(text: str, frame: Frame) -> str:
 
 
 def _uncoupled_hint(frame: Frame, reason: str, *, centred: bool) -> str:
-    told = f"Hand uncoupled ({reason})." if reason and _OFF_CENTRE not in reason else ""
+    """Say what to do first and why after it: where there is little room the reason is cut."""
+    told = f" Uncoupled: {reason}." if reason and _OFF_CENTRE not in reason else ""
     if centred:
-        return f"{told or 'In the air, hand uncoupled.'} e engages."
+        return f"e engages.{told}" if told else "In the air, hand uncoupled. e engages."
     remedy = _CENTRE_IT if frame.stick is not None else "Centre the handle, then e engages."
-    return f"{told} {remedy}".strip()
+    return f"{remedy}{told}"
 
 
 def _engaged_hint(frame: Frame) -> str:

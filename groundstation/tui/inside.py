@@ -13,6 +13,7 @@ from groundstation.tui import goals_inside, wireframe
 from groundstation.tui.camera import Camera, Solids
 from groundstation.tui.canvas import Canvas
 from groundstation.tui.frame import Frame
+from groundstation.tui.ghosts import ghost_lines
 from groundstation.tui.moving import FADED_S, FRESH_S, echoes
 from groundstation.tui.perspective import Lines, draw, visible
 from groundstation.tui.rows import columns_of
@@ -74,7 +75,7 @@ def draw_inside(
     mission, pilot = frame.run.mission, frame.pilot
     if pilot is not None and pilot.phase != Phase.ENGAGED:
         pilot = None
-    scene = [*_standing(frame, eye, mission, fence), *_flown(frame, chase=chase)]
+    scene = [*_standing(frame, eye, mission, fence), *_flown(frame, chase=chase), *ghost_lines(frame)]
     if pilot is not None:
         scene += _led(frame, pilot, chase=chase)
     draw(canvas, eye, solids, scene)

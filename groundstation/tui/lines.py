@@ -46,6 +46,11 @@ class Lines(Instrument):
         self._count = self._top = 0
         self.at = 0
 
+    @property
+    def chooses(self) -> bool:
+        """One line is chosen, and moves."""
+        return self._chosen
+
     def move(self, by: int) -> None:
         """Move by a number of lines."""
         shown = max(self.size.height, 1)

@@ -23,6 +23,11 @@ class PageEntry:
     explains: str
     screen: str
 
+    @property
+    def shown(self) -> str:
+        """The key as footer, palette and help write it."""
+        return self.key.replace("ctrl+", "^").upper()
+
 
 PAGES = (
     PageEntry(
@@ -33,6 +38,8 @@ PAGES = (
         "parameters", "f9", "Parameters", "The vehicle's own: look, search, set.", "parameters:ParametersPage"
     ),
     PageEntry("settings", "f10", "Settings", "Of this program: look, change, save.", "settings:SettingsPage"),
+    # No function key is left: F11 is what most terminals fill the whole screen with.
+    PageEntry("school", "ctrl+n", "School", "How you come along; fly another mission.", "school:SchoolPage"),
     PageEntry("log", "f12", "Log", "All events, filtered.", "log:Log"),
 )
 PAGES_BY_NAME = {page.name: page for page in PAGES}

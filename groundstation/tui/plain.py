@@ -16,6 +16,7 @@ from typing import TextIO
 from groundstation.bus import Bus
 from groundstation.console import Console, Snapshot
 from groundstation.messages import CommandKind, FlightMode, MappingMode, Preset, Severity
+from groundstation.progress.keeper import Keeper
 from groundstation.run import Run
 from groundstation.training.coach import LiveCoach
 from groundstation.training.director import Director
@@ -272,7 +273,8 @@ def fly_plainly(run: Run, bus: Bus, supervisor: Supervisor) -> int:
     from drivers.stick import StickSender as Sender
 
     stick = Sender(str(run.hand)) if run.hand else None
-    follower = MissionFollower(run.mission, bus) if run.mission else None
+    follower = MissionFollower(run.mission, bus, run.par) if run.mission else None
+    keeper = Keeper(run, follower.attempts) if follower else None
     hand = Hand() if stick is not None else None
     coach = LiveCoach(run, lambda words: bus.event(Severity.INFO, words))
     flight = PlainFlight(
@@ -288,7 +290,7 @@ def fly_plainly(run: Run, bus: Bus, supervisor: Supervisor) -> int:
     if keepalive is not None:
         keepalive.start()
     try:
-        _loop(flight, follower, keepalive)
+        _loop(flight, follower, keeper, keepalive)
     except KeyboardInterrupt:
         flight.leave()
         raise
@@ -297,10 +299,17 @@ def fly_plainly(run: Run, bus: Bus, supervisor: Supervisor) -> int:
             keepalive.stop()
         if stick is not None:
             stick.close()
+        for words in keeper.close() if keeper else ():
+            _print(words)
     return 0
 
 
-def _loop(flight: PlainFlight, follower: MissionFollower | None, keepalive: Keepalive | None) -> None:
+def _loop(
+    flight: PlainFlight,
+    follower: MissionFollower | None,
+    keeper: Keeper | None,
+    keepalive: Keepalive | None,
+) -> None:
     typed: queue.SimpleQueue[str] = queue.SimpleQueue()
     threading.Thread(target=_read, args=(sys.stdin, typed), name="words", daemon=True).start()
     while not flight.left:
@@ -309,6 +318,8 @@ def _loop(flight: PlainFlight, follower: MissionFollower | None, keepalive: Keep
         flight.turn()
         if follower is not None:
             follower.look(flight.snapshot)
+        for words in keeper.look() if keeper else ():
+            _print(words)
         try:
             flight.hear(typed.get(timeout=_TURN_S))
         except queue.Empty:

@@ -4,17 +4,23 @@ from __future__ import annotations
 
 import gc
 import sys
+from collections.abc import Callable
 
 from groundstation.bus import Bus
 from groundstation.console import Console
 from groundstation.messages import Severity
+from groundstation.progress.keeper import Keeper
 from groundstation.run import Run
+from groundstation.training.asking import Asker
 from groundstation.training.coach import LiveCoach
 from groundstation.training.follower import MissionFollower
+from groundstation.training.workload import Workload
 from groundstation.tui.app import FlightApp
 from groundstation.tui.frame import Reader, Supervisor
 from groundstation.tui.hand import StickSender
 from groundstation.tui.hangup import HangupWatch
+from groundstation.tui.instructing import Instructing
+from groundstation.tui.wish import Ending
 
 _SWITCH_S = 0.001
 
@@ -27,9 +33,22 @@ def run_screen(
     *,
     follower: MissionFollower | None = None,
     coach: LiveCoach | None = None,
-) -> int:
-    """Show the screen until the operator leaves; return the exit code."""
-    app = FlightApp(run, console, supervisor, stick, follower=follower, coach=coach)
+    keeper: Keeper | None = None,
+    on_workload: Callable[[Workload], None] = lambda _: None,
+    instructing: Instructing | None = None,
+) -> Ending:
+    """Show the screen until the operator leaves; return how that was."""
+    app = FlightApp(
+        run,
+        console,
+        supervisor,
+        stick,
+        follower=follower,
+        coach=coach,
+        keeper=keeper,
+        instructing=instructing,
+        on_workload=on_workload,
+    )
     # A collection that looks through all the modules again takes 0.2 s, and a stick is stale after 0.1 s.
     gc.collect()
     gc.freeze()
@@ -42,18 +61,37 @@ def run_screen(
         code = app.run()
     finally:
         watch.stop()
-    return (app.return_code or 0) if code is None else code
+    return Ending((app.return_code or 0) if code is None else code, app.wish)
 
 
-def fly_on_screen(run: Run, bus: Bus, supervisor: Supervisor) -> int:
-    """Show the screen of a run whose processes run; return the exit code."""
+def fly_on_screen(run: Run, bus: Bus, supervisor: Supervisor) -> Ending:
+    """Show the screen of a run whose processes run; return how it was left."""
     from drivers.stick import StickSender as Sender
 
     stick = Sender(str(run.hand)) if run.hand else None
+    follower = MissionFollower(run.mission, bus, run.par) if run.mission else None
+    keeper = Keeper(run, follower.attempts) if follower else None
+
+    def on_workload(workload: Workload) -> None:
+        # As an event it stands in the recording.
+        bus.event(Severity.INFO, workload.words)
+        if keeper:
+            keeper.keep_workload(workload)
+
     try:
-        follower = MissionFollower(run.mission, bus) if run.mission else None
-        coach = LiveCoach(run, lambda words: bus.event(Severity.INFO, words))
-        return run_screen(run, Console(bus, "screen"), supervisor, stick, follower=follower, coach=coach)
+        return run_screen(
+            run,
+            Console(bus, "screen"),
+            supervisor,
+            stick,
+            follower=follower,
+            coach=LiveCoach(run, lambda words: bus.event(Severity.INFO, words)),
+            keeper=keeper,
+            on_workload=on_workload,
+            instructing=Instructing(Asker(bus, "instructor") if run.simulated else None),
+        )
     finally:
+        for words in keeper.close() if keeper else ():
+            sys.stderr.write(f"groundstation: {words}\n")
         if stick is not None:
             stick.close()

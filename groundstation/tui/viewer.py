@@ -16,11 +16,12 @@ class Viewer:
         self._process: subprocess.Popen[bytes] | None = None
         self._output: IO[bytes] | None = None
 
-    def open(self, recording: Path) -> None:
-        """Open a recording."""
+    def open(self, recording: Path, at: float | None = None) -> None:
+        """Open a recording, at a time of it, s, or at its beginning."""
+        where = [] if at is None else ["--at", f"{at:.3f}"]
         self._output = tempfile.TemporaryFile()  # noqa: SIM115 - read when the program has ended
         self._process = subprocess.Popen(
-            [sys.executable, "-m", "groundstation.cli", "review", str(recording)],
+            [sys.executable, "-m", "groundstation.cli", "review", str(recording), *where],
             stdin=subprocess.DEVNULL,
             stdout=self._output,
             stderr=self._output,

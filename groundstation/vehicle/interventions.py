@@ -31,7 +31,7 @@ from groundstation.training.events import (
 from groundstation.training.happening import Calm, Happening, unpacked
 from groundstation.vehicle.gate import Gate
 
-_BLACKOUT, _GPS = "SIM_NET_BLACK", "SIM_GPS_LOST"
+_BLACKOUT, _GUST, _GPS, _CHARGE = "SIM_NET_BLACK", "SIM_GUST_S", "SIM_GPS_LOST", "SIM_BAT_LEFT"
 # These begin something that ends by itself: there is nothing to go back to.
 _PASSING = frozenset(
     {_BLACKOUT, _GPS, "SIM_BAT_LEFT", "SIM_GUST_E", "SIM_GUST_N", "SIM_GUST_U", "SIM_GUST_S"}
@@ -47,14 +47,18 @@ Write = tuple[str, float]
 
 
 def writes_for(happening: Happening) -> tuple[Write, ...]:
-    """Return which parameters make something happen, in the order in which they are set."""
+    """Return which parameters make something happen, in the order in which they are set.
+
+    What begins something is set to 0 before: the same value again is a repetition to the simulator, and nothing new.
+    """
     match happening:
         case WindChange(velocity=(east, north, up), turbulence=sigma):
             return (
                 ("SIM_WIND_E", east), ("SIM_WIND_N", north), ("SIM_WIND_U", up), ("SIM_WIND_TURB", sigma),
             )  # fmt: skip
         case GustNow(velocity=(east, north, up), duration_s=seconds):
-            return ("SIM_GUST_E", east), ("SIM_GUST_N", north), ("SIM_GUST_U", up), ("SIM_GUST_S", seconds)
+            peak = ("SIM_GUST_E", east), ("SIM_GUST_N", north), ("SIM_GUST_U", up)
+            return (_GUST, 0.0), *peak, (_GUST, seconds)
         case Delay(round_trip_s=seconds, jitter_s=jitter):
             return (*_both_ways("JITTER", jitter), *_both_ways("DELAY", 0.5 * seconds))
         case Loss(share=share):
@@ -62,9 +66,9 @@ def writes_for(happening: Happening) -> tuple[Write, ...]:
         case LinkLoss(duration_s=seconds):
             return ((_BLACKOUT, seconds),)
         case BatteryLeft(remaining=share):
-            return (("SIM_BAT_LEFT", share),)
+            return (_CHARGE, 0.0), (_CHARGE, share)
         case GpsLoss(duration_s=seconds):
-            return ((_GPS, seconds),)
+            return (_GPS, 0.0), (_GPS, seconds)
         case DeviceLoss() | Calm():
             return ()
 
@@ -193,7 +197,9 @@ class Writer:
     def _until_heard(self, name: str, call: Callable[[], float]) -> float:
         """Call until the vehicle has answered; frames may be lost or on their way for seconds."""
         given_up_t = time.monotonic() + _PATIENCE_S
+        heard = False
         while not self._over.is_set():
+            heard = heard or self._silence() < _SILENT_S
             try:
                 return call()
             except ParamError as error:
@@ -201,7 +207,7 @@ class Writer:
                     raise _NotDoneError(
                         f"the vehicle refused {name} ({error.result.name.lower()})"
                     ) from error
-            if name == _BLACKOUT and self._silence() > _SILENT_S:
+            if name == _BLACKOUT and heard and self._silence() > _SILENT_S:
                 # It was the answer that was lost: asked again, it would be silent twice as long.
                 return 0.0
             if time.monotonic() >= given_up_t:

@@ -20,6 +20,7 @@ _COLOURS = {
     "guard": style.AXES[1],
     "mismatch": style.AXES[2],
     "damping": style.AXES[3],
+    "guidance": style.VEHICLE,
 }
 
 

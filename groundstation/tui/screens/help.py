@@ -67,7 +67,7 @@ def help_table(buttons: Buttons, styles: Mapping[Tone, Style]) -> Table:
     )
     _section(table, heading("screens"), "Esc or the same key goes back to the flight")
     for page in PAGES:
-        table.add_row(page.key.upper(), page.label, page.explains)
+        table.add_row(page.shown, page.label, page.explains)
     _section(table, heading("choices"), "at any time")
     for choice in CHOICES:
         if choice.kind is not CommandKind.CUES:

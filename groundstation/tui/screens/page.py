@@ -91,7 +91,9 @@ class Page(Screen[None]):
     def on_mount(self) -> None:
         """Remember what is to be painted."""
         self._instruments = list(self.query(Instrument))
-        self.lines = next((each for each in self._instruments if isinstance(each, Lines)), None)
+        lists = [each for each in self._instruments if isinstance(each, Lines)]
+        # Of several the keys move the one in which a line is chosen.
+        self.lines = next((each for each in lists if each.chooses), lists[0] if lists else None)
 
     def show(self, frame: Frame) -> None:
         """Hand a frame to the page's parts."""

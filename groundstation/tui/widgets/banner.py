@@ -45,9 +45,9 @@ def headline(alarm: Alarm, now: float) -> str:
 
 
 def _shorter(text: str) -> str:
-    """Return what to do, or why, without the words before it: where there is little room that is what must fit."""
-    rest = text.partition(": ")[2] or text
-    return rest[:1].upper() + rest[1:]
+    """Return a refusal's reason without what was refused: where there is little room that is what must fit."""
+    said, _, reason = text.partition(" refused: ")
+    return reason[:1].upper() + reason[1:] if reason else said
 
 
 def _right(alarms: Alarms, shown: Alarm | None) -> str:

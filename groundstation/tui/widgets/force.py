@@ -79,7 +79,7 @@ def _acting(frame: Frame, width: int) -> Row:
     if frame.pilot is None:
         return [(f" cues {UNKNOWN}", Tone.FAINT)]
     row: Row = []
-    for part in parts(frame.pilot):
+    for part in parts(frame.pilot, guided=frame.guided):
         item: Row = [
             (f" {part.name[:_SHORT].upper()} ", Tone.FORCE),
             (quantity(part.norm, "N", 1), Tone.STRONG),
@@ -94,7 +94,7 @@ def _cues(frame: Frame, width: int) -> Iterator[Row]:
     if frame.pilot is None:
         return
     preset = Preset(frame.pilot.preset).name.lower()
-    for part in parts(frame.pilot):
+    for part in parts(frame.pilot, guided=frame.guided):
         head: Row = [
             (f" {part.key}", Tone.KEY),
             (f" {part.mark} {part.name:<12}", Tone.TEXT if part.on and part.weighted else Tone.FAINT),

@@ -50,7 +50,7 @@ def _alarm(alarm: Alarm, now: float, width: int) -> Row:
 
 def _lines(note: Note, t: float, width: int) -> list[Row]:
     tone = Tone.TEXT if note.severity is Severity.INFO else TONES[note.severity]
-    source = f"{note.source:<9}" if width >= _WITH_SOURCE else ""
+    source = f"{note.source:<8} " if width >= _WITH_SOURCE else ""
     head = f" {clock(t)} "
     room = max(width - len(head) - 4 - len(source), 10)
     pieces = wrapped(note.text, room)

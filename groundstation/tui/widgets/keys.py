@@ -6,10 +6,10 @@ from collections.abc import Iterator
 
 from textual import events
 
-from groundstation.messages import CommandKind, MappingMode, PilotState, Preset
+from groundstation.messages import CommandKind, Cue, MappingMode, PilotState, Preset
 from groundstation.pilot.presets import PRESETS
 from groundstation.tui.acts import ACTS
-from groundstation.tui.choices import CHOICES, Choice, in_effect
+from groundstation.tui.choices import CHOICES, CUES, Choice, in_effect
 from groundstation.tui.cues import Part, parts
 from groundstation.tui.frame import Frame
 from groundstation.tui.pages import PAGES
@@ -80,7 +80,7 @@ def _acts(frame: Frame) -> Iterator[Item]:
             continue
         possible = not frame.hindrances[act.name]
         yield _act(act.key, act.label, possible=possible), f"app.act('{act.name}')"
-    pages = ((page.key.upper(), page.label, f"app.page('{page.name}')") for page in PAGES)
+    pages = ((page.shown, page.label, f"app.page('{page.name}')") for page in PAGES)
     for key, label, action in (*_OTHERS, *pages, *_LOOKS):
         yield _act(key, label, possible=True), action
 
@@ -93,8 +93,10 @@ def _act(key: str, label: str, *, possible: bool) -> Row:
 
 def _choices(frame: Frame, *, full: bool) -> Iterator[Item]:
     pilot = frame.pilot
-    cues = {part.name: part for part in parts(pilot)} if pilot else {}
+    cues = {part.name: part for part in parts(pilot, guided=frame.guided)} if pilot else {}
     for choice in CHOICES:
+        if choice is CUES[Cue.GUIDANCE] and not frame.guided:
+            continue
         words = choice.name if full or choice.kind is not CommandKind.CUES else choice.name[:_SHORT]
         if pilot is None:
             row: Row = [(f" {choice.key} {words}", Tone.FAINT)]

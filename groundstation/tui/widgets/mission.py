@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 
+from groundstation.training.guide import Guide, Way
 from groundstation.training.mission import Mission as MissionFile
-from groundstation.training.score import score_of
 from groundstation.tui.directions import title, way_of, whereabouts
 from groundstation.tui.frame import Frame
 from groundstation.tui.notes import words
@@ -14,8 +14,8 @@ from groundstation.tui.theme import Tone
 from groundstation.tui.widgets.instrument import Instrument
 
 _LABEL = 12
-# What is only known once the target has been held.
-_AT_THE_END = frozenset({"precision", "time"})
+# What is only known later on.
+_AT_THE_END = {"precision": "comes when the target is held", "landing": "comes with the landing"}
 
 
 class Mission(Instrument):
@@ -37,7 +37,7 @@ class Mission(Instrument):
         rows = [_row("mission", (mission.title[: max(width - _LABEL - 2, 0)], Tone.TEXT))]
         rows += _next(frame, width)
         rows += _progress(frame, mission, width)
-        return [*rows, *_score(frame, mission, width)][:height]
+        return [*rows, *_score(frame, width)][:height]
 
 
 def _row(label: str, *parts: tuple[str, Tone]) -> Row:
@@ -51,13 +51,17 @@ def _next(frame: Frame, width: int) -> list[Row]:
         return []
     rows = [
         _row("next", (title(guide)[: max(width - _LABEL - 2, 0)], Tone.TARGET)),
-        _row("", (whereabouts(guide, way)[: max(width - _LABEL - 2, 0)], Tone.STRONG)),
+        _row("", (_where(guide, way)[: max(width - _LABEL - 2, 0)], Tone.STRONG)),
     ]
     if guide.held_s > 0.0 and guide.hold_s:
         head, figure = _row("stay"), f" {guide.held_s:.1f} of {guide.hold_s:g} s"
         room = width - width_of(head) - len(figure) - 1
         rows.append([*head, *gauge(guide.held_s, guide.hold_s, room, Tone.OK, Tone.OK), (figure, Tone.TEXT)])
     return rows
+
+
+def _where(guide: Guide, way: Way) -> str:
+    return f"{whereabouts(guide, way)}{f', then stay {guide.hold_s:g} s' if guide.hold_s else ''}"
 
 
 def _progress(frame: Frame, mission: MissionFile, width: int) -> list[Row]:
@@ -109,18 +113,16 @@ def _progress(frame: Frame, mission: MissionFile, width: int) -> list[Row]:
     return [*rows, _row("obstacles", touched, *([near] if math.isfinite(progress.clearance) else []), *gates)]
 
 
-def _score(frame: Frame, mission: MissionFile, width: int) -> list[Row]:
+def _score(frame: Frame, width: int) -> list[Row]:
     """Return the score so far, and how much of each of its parts is reached."""
-    figures = frame.figures
-    score = score_of(mission, figures) if figures is not None else None
-    if score is None or figures is None:
+    score = frame.score
+    if score is None:
         return []
-    held = not math.isnan(figures.final_error)
     rows = [_row("score", (f"{score.points:.0f}", Tone.STRONG), (" of 100 points so far", Tone.MUTED))]
     for part in score.parts:
         head: Row = [(f"   {part.name:<{_LABEL - 2}}", Tone.MUTED)]
-        if part.name in _AT_THE_END and not held:
-            rows.append([*head, ("comes when the target is held", Tone.FAINT)])
+        if part.name in _AT_THE_END and math.isnan(part.value):
+            rows.append([*head, (_AT_THE_END[part.name], Tone.FAINT)])
             continue
         figure = f" {100.0 * part.share:3.0f} %"
         strip = gauge(part.share, 1.0, width - width_of(head) - len(figure) - 1, Tone.OK)

@@ -16,14 +16,17 @@ from groundstation.tui.camera import Solids
 from groundstation.tui.canvas import Canvas
 from groundstation.tui.directions import title, way_of
 from groundstation.tui.frame import Frame
+from groundstation.tui.ghosts import draw_ghost
 from groundstation.tui.inside import camera, draw_inside
-from groundstation.tui.rows import Row, Span, quantity
+from groundstation.tui.rows import Row, Span, quantity, wrapped
 from groundstation.tui.theme import Tone
 from groundstation.tui.view import TOP, Plane, View, framing, side_of, zoomed
 from groundstation.tui.widgets.instrument import Instrument
 from groundstation.tui.wireframe import solids
 
 _NAMES_FROM = 60
+# What the first line leaves at its end, cells.
+_NORTH = 6
 _INSIDE_EVERY = 2
 # Older echoes may have gone, s. As the pilot calls them where it guards.
 _ECHOES_S = 0.5
@@ -154,12 +157,13 @@ class Overview(Instrument):
         if frame.guide is not None and (way := way_of(frame)) is not None:
             goals.draw_goal(canvas, view, frame.guide, way.distance)
         moving.draw_trail(canvas, view, frame.track.points(), frame.now)
+        draw_ghost(canvas, view, frame, named=canvas.columns >= _NAMES_FROM)
         _draw_echoes(canvas, view, frame, seen)
         if pilot is not None:
             _draw_led(canvas, view, frame, pilot, seen)
         moving.draw_vehicle(canvas, view, seen)
         scene.draw_legend(canvas, view)
-        told = [(title(frame.guide), Tone.TARGET)] if frame.guide and frame.guide.goal else []
+        told = _told(frame, canvas.columns)
         _write(canvas, [*told, *(_air(frame) if plane is TOP else [])])
         return canvas.to_rows()
 
@@ -217,10 +221,17 @@ def _draw_led(canvas: Canvas, view: View, frame: Frame, pilot: PilotState, seen:
     moving.draw_predicted(canvas, view, seen, (east, north, up, yaw), stop)
 
 
+def _told(frame: Frame, columns: int) -> list[Span]:
+    """Return in up to two lines which goal is next, beside where north is."""
+    if frame.guide is None or frame.guide.goal is None:
+        return []
+    return [(line, Tone.TARGET) for line in wrapped(title(frame.guide), columns - _NORTH)[:2]]
+
+
 def _write(canvas: Canvas, lines: list[Span]) -> None:
     """Write lines into the upper left corner."""
     for row, (text, tone) in enumerate(lines):
-        canvas.letters(1, row, text[: canvas.columns - 6], tone)
+        canvas.letters(1, row, text[: canvas.columns - _NORTH], tone)
 
 
 def _air(frame: Frame) -> list[Span]:

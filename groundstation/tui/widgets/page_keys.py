@@ -61,7 +61,7 @@ class PageKeys(Instrument):
             yield _item(key, label, action)
         for page in PAGES:
             if page.name != self._page:
-                yield _item(page.key.upper(), page.label, f"app.page('{page.name}')")
+                yield _item(page.shown, page.label, f"app.page('{page.name}')")
         yield _item("?", "Help", "app.help")
         yield _item("q", "Quit", "app.quit")
 

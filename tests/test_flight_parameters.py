@@ -27,12 +27,12 @@ def test_failsafes_are_read_by_themselves_and_a_dangerous_one_keeps_the_hand_off
             lambda view: {each.name for each in JUDGED} <= set(view.parameters), 30, "failsafes read"
         )
         assert view.parameters["COM_OF_LOSS_T"].value == 1.0
-        say(CommandKind.SET_PARAMETER, name="MPC_XY_VEL_MAX", amount=8.0)
+        say(CommandKind.SET_PARAMETER, name="MPC_XY_CRUISE", amount=8.0)
         answered(CommandKind.SET_PARAMETER, ok=False)
         say(CommandKind.PARAMETERS)
         view = answered(CommandKind.PARAMETERS, ok=True)
         assert set(NAMES) <= set(view.parameters)
-        assert view.parameters["MPC_XY_VEL_MAX"].count == len(view.parameters)
+        assert view.parameters["MPC_XY_CRUISE"].count == len(view.parameters)
         say(CommandKind.SET_PARAMETER, name="COM_OBL_RC_ACT", amount=6.0)
         program.until(lambda view: b"COM_OBL_RC_ACT = 6" in view.status.unsafe, 5, "called unsafe")
         say(CommandKind.SET_PARAMETER, name="COM_OBL_RC_ACT", amount=99.0)

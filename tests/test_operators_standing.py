@@ -12,6 +12,8 @@ from groundstation.training.measures import Measures
 from groundstation.training.mission import Criteria, Target, find_mission, load_mission
 from sim.people import PEOPLE
 
+# Thirty-two flights: a busy machine takes its time.
+pytestmark = pytest.mark.timeout(240)
 SEEDS = 2
 # A few of those that come with the program; `python -m bench school` flies them all, on more seeds.
 NAMES = ("hover", "landing", "gates", "check-ride")

@@ -44,7 +44,7 @@ class School(App[Wish]):
     #answers { color: $muted; }
     #typed { height: 3; border: round $vehicle; background: $ink; }
     """
-    HORIZONTAL_BREAKPOINTS: ClassVar = [(0, "-stacked"), (140, "-beside")]
+    HORIZONTAL_BREAKPOINTS = [(0, "-stacked"), (140, "-beside")]  # noqa: RUF012 - Textual's
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("ctrl+t", "next_theme", "Next theme", show=False),
         Binding("q,escape", "leave", "Leave", show=False),

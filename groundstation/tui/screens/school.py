@@ -16,7 +16,7 @@ class SchoolPage(Page):
     """The course beside a flight."""
 
     NAME = "school"
-    HORIZONTAL_BREAKPOINTS: ClassVar = [(0, "-stacked"), (140, "-beside")]
+    HORIZONTAL_BREAKPOINTS = [(0, "-stacked"), (140, "-beside")]  # noqa: RUF012 - Textual's
     OWN_KEYS: ClassVar = (
         ("Enter", "Fly it", "screen.take"),
         ("p", "Next pilot", "screen.next_pilot"),

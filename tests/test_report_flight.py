@@ -96,7 +96,8 @@ def test_a_flights_page_has_all_that_was_asked_for(flight_file):
     ]  # fmt: skip
     titles = [table.title for table in report.tables]
     assert titles == [
-        "Score", "How late", "The servo", "Passivity", "What happened", "Settings that differ", "All settings"
+        "Score", "Where points were lost", "How late", "The servo", "Passivity", "What happened",
+        "Settings that differ", "All settings",
     ]  # fmt: skip
     content = page(report)
     assert content.count("<svg") == len(names)

@@ -52,12 +52,14 @@ def as_told(text: str, frame: Frame) -> str:
 
 
 def _uncoupled_hint(frame: Frame, reason: str, *, centred: bool) -> str:
-    """Say what to do first and why after it: where there is little room the reason is cut."""
-    told = f" Uncoupled: {reason}." if reason and _OFF_CENTRE not in reason else ""
+    """Say why the hand is uncoupled, for another may have the vehicle, then how it is coupled."""
+    told = bool(reason) and _OFF_CENTRE not in reason
     if centred:
-        return f"e engages.{told}" if told else "In the air, hand uncoupled. e engages."
-    remedy = _CENTRE_IT if frame.stick is not None else "Centre the handle, then e engages."
-    return f"{remedy}{told}"
+        return f"Uncoupled: {reason}. e engages." if told else "In the air, hand uncoupled. e engages."
+    if told:
+        remedy = "Space centres, e engages." if frame.stick is not None else "Centre it, e engages."
+        return f"Uncoupled: {reason}. {remedy}"
+    return _CENTRE_IT if frame.stick is not None else "Centre the handle, then e engages."
 
 
 def _engaged_hint(frame: Frame) -> str:

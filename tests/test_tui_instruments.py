@@ -241,7 +241,7 @@ def test_the_horizon_sinks_when_the_nose_rises_and_leans_against_the_roll():
 
 async def test_the_mission_shows_stage_way_clock_and_score():
     run = canned_run()
-    async with cockpit(size=(200, 60)) as scene:
+    async with cockpit(size=(200, 100)) as scene:
         follower = CannedFollower(run)
         flight = CannedFlight(run)
         while flight.elapsed < 17.0:

@@ -164,7 +164,7 @@ def test_the_next_step_follows_the_flight():
     shown.pilot.centred = 0
     shown.pilot.reason = b"the vehicle's position is 0.8 s old"
     assert next_step(frame(shown)) == (
-        "Off centre: space centres the stick, then e engages. Uncoupled: the vehicle's position is 0.8 s old."
+        "Uncoupled: the vehicle's position is 0.8 s old. Space centres, e engages."
     )
     shown.pilot.phase = Phase.ENGAGING
     assert "Engaging" in next_step(frame(shown))

@@ -107,7 +107,6 @@ def test_obstacles_beside_the_vehicle_are_drawn_solid_others_as_outlines():
     assert Tone.BESIDE in tones(low)
     assert Tone.BESIDE not in tones(high)
     assert Tone.OBSTACLE in tones(high)
-    assert {Tone.TARGET, Tone.ROUTE} <= tones(high)
 
 
 def test_the_scale_is_as_long_as_it_says():

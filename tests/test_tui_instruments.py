@@ -16,6 +16,7 @@ from groundstation.tui.tape import heading_tape
 from groundstation.tui.theme import PALETTES, THEMES, Tone, styles_of
 from groundstation.tui.widgets.attitude import draw_horizon
 from groundstation.tui.widgets.instrument import Instrument
+from groundstation.tui.widgets.mission import Mission
 from groundstation.tui.widgets.overview import Overview, Sight
 from groundstation.tui.widgets.pages import NAMES
 
@@ -241,7 +242,7 @@ def test_the_horizon_sinks_when_the_nose_rises_and_leans_against_the_roll():
 
 async def test_the_mission_shows_stage_way_clock_and_score():
     run = canned_run()
-    async with cockpit(size=(200, 100)) as scene:
+    async with cockpit(size=(200, 60)) as scene:
         follower = CannedFollower(run)
         flight = CannedFlight(run)
         while flight.elapsed < 17.0:
@@ -255,7 +256,8 @@ async def test_the_mission_shows_stage_way_clock_and_score():
         assert "of 01:30 min" in words
         assert "of 100 points so far" in words
         assert "following" in words
-        assert "comes when the target is held" in words
+        rows = Mission().draw(scene.app._latest, 60, 20)
+        assert any("comes when the target is held" in "".join(text for text, _ in row) for row in rows)
 
 
 async def test_a_late_mission_clock_is_marked_not_only_coloured():

@@ -6,7 +6,7 @@ export UV_PYTHON_DOWNLOADS := never
 export UV_PROJECT_ENVIRONMENT := .venv
 unexport VIRTUAL_ENV
 
-.PHONY: help fly test coverage check audit format bench docs-pictures clean
+.PHONY: help fly school test coverage check audit format bench docs-pictures clean
 help: ## list the targets
 	@grep -E '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## (.*)/  make \1\t\2/' | expand -t 22
 
@@ -18,6 +18,9 @@ help: ## list the targets
 
 fly: .venv/.synced ## start a training flight on the simulated vehicle
 	@$(BIN)/groundstation --sim
+
+school: .venv/.synced ## learn to fly: mission by mission, with a coach
+	@$(BIN)/groundstation school
 
 # What runs real processes in real time runs by itself, one after the other.
 test: check .venv/.synced ## run every check and every test

@@ -12,7 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from groundstation.training import habits
-from groundstation.training.coach import AGAIN_S, QUIET_S, SHOWN_S, TIMES, Coach, LiveCoach
+from groundstation.training.coach import AGAIN_S, LEAST_S, QUIET_S, SHOWN_S, TIMES, Coach, LiveCoach
 from groundstation.training.guide import Guide, Way
 from groundstation.training.habits import Habit, Seen, Watch
 from groundstation.training.oscillation import Oscillation
@@ -125,6 +125,14 @@ def test_a_hint_stands_for_a_while_and_is_not_repeated_at_once():
     assert sum(bool(hint) for hint in shown) * STEP_S == pytest.approx(
         TIMES * SHOWN_S, abs=TIMES * 2 * STEP_S
     )
+
+
+def test_a_hint_that_is_followed_goes_once_it_can_have_been_read():
+    coach, shown = Coach(), []
+    for step in range(1200):
+        hint, _ = coach.look(FLYING._replace(t=step * STEP_S, on_leash=step * STEP_S < 3.5))
+        shown.append(hint)
+    assert sum(bool(hint) for hint in shown) * STEP_S == pytest.approx(LEAST_S, abs=2 * STEP_S)
 
 
 def test_only_the_most_pressing_is_said_and_then_there_is_quiet():

@@ -37,16 +37,23 @@ from sim.scenario import Gate
 
 RUN = canned_run()
 NORTH = math.pi / 2
+ZERO = (0.0, 0.0, 0.0, 0.0)
 VIEW = View(0.0, 0.0, 0.1, 160, 100)
 
 
 def frame(
-    guide: Guide | None, place: Sequence[float] = (0.0, 0.0, 2.0, 0.0), *, run=RUN, stick=CENTRED
+    guide: Guide | None,
+    place: Sequence[float] = (0.0, 0.0, 2.0, 0.0),
+    *,
+    run=RUN,
+    stick=CENTRED,
+    velocity=ZERO,
 ) -> Frame:
     flight = CannedFlight(run)
     flight.advance(12.0)
     snapshot = flight.snapshot()
     snapshot.vehicle.position[:] = place
+    snapshot.vehicle.velocity[:] = velocity
     snapshot.pilot.guarding = 0
     return Frame(
         snapshot=snapshot, run=run, started=1000.0, states={}, stick=stick,
@@ -113,6 +120,14 @@ def test_at_the_goal_it_says_what_is_left_to_do():
     assert steer(to(5.0, 0.0, 2.0, hold_s=3.0)).endswith("Then stay 3 s.")
     assert steer(to(0.1, 0.0, 0.0, landing=True)) == "Over the pad: s brings it down, l lands."
     assert steer(to(2.0, 0.0, 0.0, landing=True)).startswith("2.0 m, ahead. Push ↑ forward.")
+
+
+def test_it_says_when_to_let_go_where_the_vehicle_is_to_stay():
+    fast = {"velocity": (0.6, 0.0, 0.0, 0.0)}
+    assert steer(to(0.5, 0.0, 2.0, hold_s=3.0), **fast) == "Now let go: space stops it, then stay 3 s."
+    assert "Push" in steer(to(2.0, 0.0, 2.0, hold_s=3.0), **fast), "it is far yet"
+    assert "Push" in steer(to(-0.6, 0.0, 2.0, hold_s=3.0), **fast), "it flies away from it"
+    assert "Now" not in steer(to(0.5, 0.0, 2.0), **fast), "it is only passed"
 
 
 def test_in_position_mode_the_handle_is_kept_still():

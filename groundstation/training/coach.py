@@ -12,8 +12,8 @@ from groundstation.run import Run
 from groundstation.training.guide import Guide, way_to
 from groundstation.training.habits import Habit, Seen, Watch
 
-# A hint stands for so long, s.
-SHOWN_S = 6.0
+# A hint stands for so long, s; once it is followed only until it can have been read.
+SHOWN_S, LEAST_S = 6.0, 2.5
 # After any hint there is quiet, and after one the same waits longer each time, s; then it has been said.
 QUIET_S, AGAIN_S, TIMES = 10.0, 30.0, 3
 # From this level of a mission, or share of what is to be learnt, on nobody is told the basics.
@@ -51,7 +51,9 @@ class Coach:
             quiet: Something more important is being said: nothing new now.
         """
         found = self._watch.look(seen)
-        if seen.t - self._hint_t >= SHOWN_S or quiet:
+        stood = seen.t - self._hint_t
+        mended = stood >= LEAST_S and all(each.words != self._hint for each in found)
+        if stood >= SHOWN_S or mended or quiet:
             self._hint = ""
         if quiet or seen.t - self._hint_t < QUIET_S:
             return self._hint, None

@@ -6,6 +6,7 @@ import math
 
 from groundstation.frames import body_from_world
 from groundstation.messages import MappingMode
+from groundstation.training.director import Goal
 from groundstation.training.guide import Guide, Way, way_to
 from groundstation.tui.frame import Frame
 from groundstation.tui.rows import quantity
@@ -14,6 +15,8 @@ from groundstation.tui.rows import quantity
 _AHEAD, _BEHIND = math.radians(15.0), math.radians(165.0)
 # A part of the way that is less than this share of the whole is not worth a word.
 _WORTH = 0.3
+# Slower than this it stands, m/s. From reading the words to standing still takes about so long at its speed, s.
+_FLYING, _STOPPING_S = 0.15, 1.0
 # Along forward, left, up, turned left: the words for more and for less, with the on-screen stick's keys.
 _PUSHES = ((("forward", "↑"), ("back", "↓")), (("left", "←"), ("right", "→")), (("up", "w"), ("down", "s")))
 
@@ -52,6 +55,8 @@ def steering(frame: Frame, guide: Guide, way: Way) -> str:
     assert goal is not None
     if guide.landing and math.hypot(way.ahead, way.left) <= goal.radius:
         return f"Over the pad: {_key(frame, 's', 'lower the handle')} brings it down, l lands."
+    if guide.hold_s and not guide.landing and _arriving(frame, goal):
+        return f"Now let go: {_key(frame, 'space stops it', 'at the centre it stops')}, then stay {guide.hold_s:g} s."
     if way.distance > goal.radius or guide.landing:
         # What comes later stands last: where there is little room it is cut.
         then = f" Then stay {guide.hold_s:g} s." if guide.hold_s else ""
@@ -62,6 +67,17 @@ def steering(frame: Frame, guide: Guide, way: Way) -> str:
             f"There. Turn {abs(math.degrees(way.turn)):.0f}° {side}{f' with {key}' if frame.stick else ''}."
         )
     return f"Stay: {guide.held_s:.1f} of {guide.hold_s:g} s. {_stand(frame)}"
+
+
+def _arriving(frame: Frame, goal: Goal) -> bool:
+    """Say whether a hand that lets go now comes to rest about at the goal: the reaction and the way to stop."""
+    vehicle = frame.snapshot.vehicle
+    if vehicle is None or (frame.pilot is not None and frame.pilot.mapping == MappingMode.POSITION):
+        return False
+    way = [to - at for to, at in zip(goal.at, vehicle.position[:3], strict=True)]
+    distance = math.hypot(*way)
+    closing = sum(d * v for d, v in zip(way, vehicle.velocity[:3], strict=True)) / max(distance, 1e-9)
+    return closing > _FLYING and distance < _STOPPING_S * closing
 
 
 def _bearing(bearing: float) -> str:

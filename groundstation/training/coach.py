@@ -119,7 +119,7 @@ class LiveCoach:
         along = body_from_world((east, north, up), yaw if self._heading else 0.0)
         return Seen(
             t=view.t,
-            handle=_share(handle.position, device.workspace),
+            handle=_share((handle.position[0], handle.position[1], handle.position[2]), device.workspace),
             yaw=handle.yaw / self._yaw_range,
             force=(handle.force[0], handle.force[1], handle.force[2]),
             velocity=along,

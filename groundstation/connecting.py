@@ -11,6 +11,9 @@ from pathlib import Path
 from drivers.discovery import Found, discover_all
 from groundstation.config import load_settings
 from groundstation.connections import Connection, recent, remember
+from groundstation.login import login_name
+from groundstation.progress.desk import Desk
+from groundstation.progress.words import NEXT
 from groundstation.training.curriculum import lessons
 from groundstation.vehicle.finding import Place, listen, serial_places
 
@@ -28,7 +31,7 @@ def connect(asked: argparse.Namespace) -> bool:
     def devices() -> Sequence[Found]:
         return discover_all(settings.devices)
 
-    offers = Offers(_places, devices, _missions(), recent(asked.logs), settings.buttons)
+    offers = Offers(_places, devices, _missions(asked), recent(asked.logs), settings.buttons)
     chosen = Connect(offers, device=asked.device or "", mission=asked.mission or "").run()
     if chosen is None:
         return False
@@ -50,5 +53,11 @@ def _places() -> Sequence[Place]:
     return [*listen(), *serial_places()]
 
 
-def _missions() -> list[tuple[str, str]]:
-    return [(path.stem, mission.title) for path, mission in lessons()]
+def _missions(asked: argparse.Namespace) -> list[tuple[str, str]]:
+    """Return the missions in the order in which they are learned, but first what comes next for the pilot."""
+    pilot = asked.pilot if asked.pilot is not None else login_name()
+    advice = Desk(asked.logs).report(pilot).standing.next
+    following = advice.mission if advice else ""
+    found = [(path.stem, mission.title, mission.name == following) for path, mission in lessons()]
+    found.sort(key=lambda each: not each[2])
+    return [(name, f"{title}  {NEXT} next for you" if first else title) for name, title, first in found]

@@ -139,16 +139,13 @@ def accompanied(run: Run, asked: argparse.Namespace) -> Run:
     """Return a run with the ghost that is followed, and with guidance as strong as the pilot needs it.
 
     By itself it guides only a hand that trains on the simulated vehicle, and a scripted hand needs neither.
-
-    Raises:
-        InputError: What the pilot has flown cannot be read.
     """
     if run.mission is None:
         return run
     from groundstation.progress.company import flown_by, ghost_of, guidance_of
     from groundstation.training.curriculum import lessons
 
-    flights, best = flown_by(run.pilot, run.mission, asked.logs)
+    flights, best = flown_by(run.pilot, run.mission, asked.logs, _complain)
     wanted = run.settings.training.guidance if asked.guidance is None else asked.guidance
     if wanted == "auto":
         trains = run.simulated and not asked.headless
@@ -156,6 +153,10 @@ def accompanied(run: Run, asked: argparse.Namespace) -> Run:
     asked_ghost = "off" if asked.headless and not asked.ghost else asked.ghost
     ghost = ghost_of(asked_ghost, run.mission, Path(run.mission_path), best)
     return msgspec.structs.replace(run, ghost=ghost, guidance=wanted)
+
+
+def _complain(words: str) -> None:
+    sys.stderr.write(f"groundstation: {words}\n")
 
 
 def _check(asked: argparse.Namespace) -> None:

@@ -114,6 +114,15 @@ def test_check_tells_right_wrong_and_unreadable_by_its_exit_code(capsys, tmp_pat
     assert "zeppelin" in capsys.readouterr().err
 
 
+def test_a_mission_may_need_one_that_is_checked_with_it(capsys, tmp_path):
+    first, second = tmp_path / "first.toml", tmp_path / "second.toml"
+    target = "[target]\nposition = [3, 0, 2]\n"
+    first.write_text(f'schema = 1\nname = "first"\ntitle = "t"\n{target}')
+    second.write_text(f'schema = 1\nname = "second"\ntitle = "t"\nneeds = ["first", "hover"]\n{target}')
+    assert missions("check", second) == 1
+    assert missions("check", second, first) == 0
+
+
 def test_what_is_shipped_passes_its_own_check(capsys):
     assert missions("check", *(lesson.path for lesson in lessons())) == 0
 

@@ -6,16 +6,20 @@ import sqlite3
 import subprocess
 import sys
 
+import msgspec
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from groundstation.errors import InputError
+from groundstation.progress.company import flown_by
 from groundstation.progress.flown import Flown
 from groundstation.progress.opening import FILE, store_in
 from groundstation.progress.store import Store
 from groundstation.progress.tables import VERSION
 from groundstation.training.measures import Track
+from groundstation.training.mission import find_mission, load_mission
+from groundstation.training.reference import digest_of
 from groundstation.training.workload import Workload
 
 TRACK = Track(0.2, ((0.0, 0.0, 0.5), (0.1, -0.2, 1.0)))
@@ -176,6 +180,7 @@ def test_a_disk_that_takes_nothing_more_costs_a_sentence_and_what_was_kept_stays
 _WRITER = """
 import sys
 from pathlib import Path
+from groundstation.progress.company import flown_by
 from groundstation.progress.flown import Flown
 from groundstation.progress.store import Store
 pilot, path = sys.argv[1], Path(sys.argv[2])
@@ -245,3 +250,27 @@ def test_whatever_was_flown_comes_back(flights):
         assert len(kept) == len(flights)
         for number, each in zip(numbers, flights, strict=True):
             assert {**_fields(kept[number]), "number": 0} == _fields(each)
+
+
+@pytest.mark.parametrize("wrong", ["damaged", "not to be opened"])
+def test_what_is_wrong_with_the_store_is_told_and_no_reason_not_to_fly(path, tmp_path, wrong):
+    if wrong == "damaged":
+        path.write_bytes(b"no database" * 50)
+    else:
+        path.mkdir()
+    told: list[str] = []
+    mission = load_mission(find_mission("hover"))
+    assert flown_by("Ann", mission, tmp_path, told.append) == ([], None)
+    assert len(told) == 1
+    assert flown_by("", mission, tmp_path, told.append) == ([], None)
+
+
+def test_the_ghost_is_the_best_flight_of_the_mission_as_it_is(path, tmp_path):
+    mission = load_mission(find_mission("hover"))
+    told: list[str] = []
+    with Store(path) as store:
+        store.add(flown(points=90.0, passed=True), Track(0.2))
+        now = msgspec.structs.replace(flown(hour=11, points=80.0, passed=True), digest=digest_of(mission))
+        store.add(now, TRACK)
+    flights, best = flown_by("ann", mission, tmp_path, told.append)
+    assert (len(flights), best, told) == (2, TRACK, [])

@@ -24,6 +24,9 @@ from groundstation.messages import (
     Event,
     Severity,
 )
+from groundstation.progress.flown import Flown as Kept
+from groundstation.progress.opening import store_in
+from groundstation.progress.store import Store
 from groundstation.recording import schema
 from groundstation.recording.batch import Batch
 from groundstation.recording.session import Session
@@ -93,7 +96,8 @@ def test_a_flights_page_has_all_that_was_asked_for(flight_file):
     ]  # fmt: skip
     titles = [table.title for table in report.tables]
     assert titles == [
-        "Score", "How late", "The servo", "Passivity", "What happened", "Settings that differ", "All settings"
+        "Score", "Where points were lost", "How late", "The servo", "Passivity", "What happened",
+        "Settings that differ", "All settings",
     ]  # fmt: skip
     content = page(report)
     assert content.count("<svg") == len(names)
@@ -189,6 +193,19 @@ def test_a_class_says_who_needs_help():
     assert [pilots[name][-1] for name in ("Ada", "Ben", "Cem")] == ["", "needs help", "needs help"]
     assert pilots["Ada"][3:6] == ("88", "90", "85")
     assert "x.rrd" in page(report)
+
+
+def test_a_class_with_a_store_shows_what_each_pilot_can_do(tmp_path, capsys):
+    with Store(store_in(tmp_path)) as store:
+        for pilot, points, passed in (("Ada", 90.0, True), ("Ben", 40.0, False)):
+            store.add(Kept(pilot, "spring", "d", "2026-11-20T10:00:00+01:00", passed=passed, points=points))
+    code, _, _ = run_cli(capsys, "--class", "--logs", tmp_path, "--out", tmp_path / "class.html")
+    assert code == 0
+    words = (tmp_path / "class.html").read_text()
+    assert "<td>Ada</td><td>90</td>" in words
+    assert "<td>Ben</td><td>▲ 20</td>" in words
+    assert "not passed yet: fly it again" in words
+    assert run_cli(capsys, "--class", "--logs", tmp_path, "--mission", "eight")[0] == 2
 
 
 def test_a_class_is_summed_up_in_spite_of_a_broken_recording(tmp_path, flight_file, capsys):

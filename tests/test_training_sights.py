@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from groundstation.bus import Bus
-from groundstation.messages import HANDLE, PILOT_STATE, POINTS_LOST, VEHICLE_STATE, VEHICLE_STATUS
+from groundstation.messages import EVENT, HANDLE, PILOT_STATE, POINTS_LOST, VEHICLE_STATE, VEHICLE_STATUS
 from groundstation.run_folder import new_run_id
 from groundstation.training.attempts import Attempts
 from groundstation.training.follower import MissionFollower
@@ -109,3 +109,21 @@ def test_a_follower_sees_every_record_and_tells_where_points_were_lost(bus):
         (moment.t, moment.lost, moment.part) for moment in expected.story
     ]
     assert follower.complete
+
+
+def test_a_follower_that_is_held_up_says_that_it_missed_something(bus):
+    follower = MissionFollower(RUN.mission, bus, PAR)
+    told = bus.subscriber(EVENT)
+    topics = (VEHICLE_STATE, VEHICLE_STATUS, PILOT_STATE, HANDLE)
+    publishers = [bus.publisher(topic) for topic in topics]
+    for records in FLOWN[:200]:
+        for publisher, record in zip(publishers, records, strict=True):
+            publisher.send(record)
+    follower.look(CannedFlight(RUN).snapshot())
+    assert follower.complete
+    for _ in range(HANDLE.depth + 1):
+        publishers[-1].send(FLOWN[200][-1])
+    for _ in range(2):
+        follower.look(CannedFlight(RUN).snapshot())
+    assert not follower.complete
+    assert ["Held up" in event.text.decode() for event in told.drain()] == [True]

@@ -15,7 +15,7 @@ from groundstation.training.measurer import HandSight, Measurer, VehicleSight
 from groundstation.training.measures import Measures
 from groundstation.training.score import UNFINISHED
 from groundstation.training.story import Moment, clock, worth_telling
-from groundstation.training.telling import told
+from groundstation.training.telling import Landings, told
 
 PAR = Measures(time_s=10.0, reached=1.0, rms_error_m=0.1, path_error_m=0.02, effort_n=0.5, smoothness=-1.5)
 
@@ -125,6 +125,18 @@ def test_it_is_told_in_lines():
     first = judgement.story[0]
     assert f"(--at {first.t + 5.0:.1f}), {first.part}: {first.words}" in "\n".join(lines)
     assert "nobody has flown" in next(iter(told(judgement, "")))
+
+
+def test_a_landing_is_told_once():
+    landings = Landings("the expert operator on seed 3")
+    first, second = judgement_of(flown(y=1.1), PAR), judgement_of(flown(), None)
+    assert list(landings.news(None)) == []
+    lines = list(landings.news(first))
+    assert lines[0].startswith("Landed, NOT passed: ")
+    assert "1 collisions, 0 forgiven" in lines[0]
+    assert lines[1:] == list(told(first, "the expert operator on seed 3"))
+    assert list(landings.news(first)) == []
+    assert next(landings.news(second)).startswith("Landed, NOT" if second.shortcomings else "Passed.")
 
 
 @pytest.mark.parametrize(

@@ -38,9 +38,10 @@ async def debrief(size=(120, 40), best: Score | None = None):
     flight.advance(0.3)
     reader, follower = CannedReader(flight.snapshot()), Flown(run)
     app = FlightApp(
-        run, reader, CannedSupervisor(), CannedStick(), follower=follower, best=best, on_workload=kept.append,
+        run, reader, CannedSupervisor(), CannedStick(), follower=follower, on_workload=kept.append,
         clock=lambda: START,
     )  # fmt: skip
+    app.best = best
     app._viewer = Watched()
     async with app.run_test(size=size, notifications=True) as pilot:
         scene = Cockpit(app, pilot, reader, None)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import argparse
 import datetime
 from dataclasses import replace
 from pathlib import Path
@@ -19,6 +20,7 @@ from canned_flight import (
 )
 from textual.widgets import OptionList, Static
 
+from groundstation import connecting
 from groundstation.progress.desk import Desk
 from groundstation.progress.flown import Flown
 from groundstation.progress.keeper import Keeper
@@ -292,3 +294,11 @@ def test_a_store_that_cannot_be_written_costs_a_sentence_and_no_flight(tmp_path)
     (words,) = Keeper(run, follower.attempts).close()
     assert "progress cannot be kept there" in words
     assert "progress import" in words
+
+
+def test_where_a_flight_is_chosen_what_comes_next_stands_first(desk, tmp_path):
+    asked = argparse.Namespace(pilot="Bob", logs=tmp_path)
+    (name, title), *others = connecting._missions(asked)
+    assert (name, title) == ("hover", "Hover: to a point, keep it there, land  ▸ next for you")
+    assert others[0][0] == "spring"
+    assert len(others) == len(COURSE) - 1

@@ -58,6 +58,8 @@ def fly_here(fly: Callable[[Task], Result], tasks: Sequence[Task], jobs: int) ->
             flying |= {pool.submit(fly, task) for task in itertools.islice(ahead, len(ended))}
             for future in ended:
                 yield future.result()
+        # Nothing is under way: the processes end by themselves, and none is told so that has gone already.
+        pool.shutdown()
     except BrokenProcessPool as error:
         raise WorkError("a process that was flying was killed, perhaps for want of memory") from error
     finally:

@@ -38,7 +38,9 @@ from sim.simulator import Simulator
 
 # A hand that leaves the handle alone from take-off on, and only lands when that is all there is left to do.
 NOBODY = "nobody"
-# A quarter of the real servo's rate.
+# A quarter of the real servo's rate, and of its cost. With it the expert's slalom, landing and wind take the same
+# time as at 1000 Hz to the last digit, on two seeds each. The way is off by 0.1 mm at most, clearance by 3 mm, the
+# RMS of p̃ by 1 mm and the effort by 0.003 N: less than from seed to seed.
 RATE_HZ = 250.0
 # A landing that takes longer is none, s: the autopilot sinks at 0.7 m/s.
 _LANDING_S = 60.0

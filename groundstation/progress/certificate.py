@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import datetime
 from collections.abc import Sequence
-from functools import partial
 from pathlib import Path
 
 from groundstation import __version__
@@ -13,8 +12,7 @@ from groundstation.progress.flown import Flown
 from groundstation.progress.skills import levels_of, standing_of
 from groundstation.progress.words import counted, hours
 from groundstation.report import pdf
-from groundstation.report.document import Finding, Plate, Report, Table, page
-from groundstation.report.figures import progress
+from groundstation.report.document import Finding, Report, Table, page
 from groundstation.training.mission import Mission
 
 CHECK_RIDE = "check-ride"
@@ -67,23 +65,9 @@ def certificate_of(flights: Sequence[Flown], curriculum: Sequence[Mission], toda
         f"{flights[0].pilot} has flown the missions below between {flights[0].day} and {flights[-1].day}.",
         NO_LICENCE,
     ]
-    scores = {
-        name: record.points for name, record in standing.records.items() if record.passed and record.points
-    }
-    plates = [
-        Plate(
-            "Progress",
-            "Points of each mission, flight by flight",
-            "Dashed: from here on a mission counts as flown well.",
-            progress.height(len(scores)),
-            partial(progress.draw, scores=scores, low=70.0),
-        )
-    ]
     facts = [("issued", f"{today}"), ("by", f"groundstation {__version__}")]
     tables = [_missions(flights, curriculum), _skills(flights, curriculum)]
-    return Report(
-        f"Flown by feel: {flights[0].pilot}", lead, findings, plates if scores else (), facts, tables
-    )
+    return Report(f"Flown by feel: {flights[0].pilot}", lead, findings, (), facts, tables)
 
 
 def _missions(flights: Sequence[Flown], curriculum: Sequence[Mission]) -> Table:

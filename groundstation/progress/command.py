@@ -33,6 +33,8 @@ def run(asked: argparse.Namespace) -> int:
 def _show(asked: argparse.Namespace) -> int:
     pilot = asked.pilot or login_name()
     flights = _flights(asked.logs, pilot, must_be=asked.pilot is not None)
+    # As it was written first.
+    pilot = flights[0].pilot if flights else pilot
     today = datetime.datetime.now().astimezone().date()
     standing = standing_of([lesson.mission for lesson in lessons()], flights, today)
     if asked.json:
@@ -45,21 +47,13 @@ def _show(asked: argparse.Namespace) -> int:
 def _pilots(asked: argparse.Namespace) -> int:
     found = everybody(_read(asked.logs))
     if asked.json:
-        print(json.dumps(found))
+        print(json.dumps({name: career._asdict() for name, career in found.items()}))
     elif not found:
         print(f"Nobody has flown a mission yet, as far as {asked.logs} tells.")
     else:
-        rows = [("pilot", "flights", "time", "passed", "last flown")]
-        rows += [
-            (
-                name,
-                str(each["flights"]),
-                hours(float(str(each["duration_s"]))),
-                str(each["passed"]),
-                str(each["last"]),
-            )
-            for name, each in found.items()
-        ]
+        rows: list[tuple[str, ...]] = [("pilot", "flights", "time", "passed", "last flown")]
+        for name, (flights, seconds, passed, last) in found.items():
+            rows.append((name, f"{flights}", hours(seconds), f"{passed}", last))
         print("\n".join(aligned(rows)))
     return 0
 

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Literal
 
+from groundstation.errors import InputError
 from groundstation.progress.flown import Flown
 from groundstation.progress.opening import store_in
 from groundstation.progress.skills import levels_of
@@ -54,15 +55,26 @@ def guidance_of(mission: Mission, flights: Sequence[Flown], curriculum: Sequence
     return min(max(1.0 - level / SKILLED, 0.0), 1.0)
 
 
-def flown_by(pilot: str, mission: Mission, logs: Path) -> tuple[list[Flown], Track | None]:
+def flown_by(
+    pilot: str, mission: Mission, logs: Path, tell: Callable[[str], None]
+) -> tuple[list[Flown], Track | None]:
     """Return what a pilot has flown, oldest first, and the way of the best flight of a mission as it is now.
 
-    Raises:
-        InputError: The store cannot be used.
+    Args:
+        pilot: Who; "" for nobody.
+        mission: What will be flown.
+        logs: The folder of the store.
+        tell: Told what is wrong with the store: that is no reason not to fly.
     """
     file = store_in(logs)
     if not pilot or not file.exists():
         return [], None
-    with Store(file) as store:
-        best = store.best(pilot, mission.name, digest_of(mission))
-        return store.flights(pilot), store.track(best.number) if best is not None else None
+    try:
+        with Store(file) as store:
+            if store.words:
+                tell(store.words)
+            best = store.best(pilot, mission.name, digest_of(mission))
+            return store.flights(pilot), store.track(best.number) if best is not None else None
+    except InputError as error:
+        tell(str(error))
+        return [], None

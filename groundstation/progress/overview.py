@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import datetime
+import textwrap
 from collections.abc import Iterator, Sequence
+from typing import NamedTuple
 
 from groundstation.progress.flown import Flown
 from groundstation.progress.skills import Standing
 from groundstation.progress.words import counted, due_words, hours, mark, number, trend
 
-_HEADS = ("", "mission", "level", "best", "last", "trend", "flights", "passed", "due")
+_HEADS = ("", "mission", "level", "best", "last", "trend", "flights", "passed, due")
+_WIDTH = 80
 _NAME_WIDTH = 11
 _BAR_WIDTH = 20
 
@@ -28,13 +31,15 @@ def table(pilot: str, standing: Standing, flights: Sequence[Flown], today: datet
                 number(record.points[-1] if record.points else None),
                 trend(record.points),
                 str(record.flights or "–"),
-                record.passed.isoformat() if record.passed else "",
-                due_words(record, today),
+                ", ".join(
+                    filter(None, (record.passed and record.passed.isoformat(), due_words(record, today)))
+                ),
             )
         )
     lines = [summary(pilot, standing, flights)]
     if standing.next:
-        lines.append(f"Next: {standing.next.mission} ({standing.next.why}).")
+        words = f"Next: {standing.next.mission} ({standing.next.why})."
+        lines += textwrap.wrap(words, _WIDTH, subsequent_indent=" " * len("Next: "))
     lines += ["", *aligned(rows)]
     if standing.levels:
         lines += ["", "skills", *_levels(standing)]
@@ -95,15 +100,24 @@ def fields(
     }
 
 
-def everybody(flights: Sequence[Flown]) -> dict[str, dict[str, object]]:
-    """Return by pilot what they have flown, in figures."""
-    found: dict[str, dict[str, object]] = {}
+class Career(NamedTuple):
+    """What a pilot has flown, in figures: flights, time in the air (s), missions passed, and the last day."""
+
+    flights: int
+    duration_s: float
+    passed: int
+    last: str
+
+
+def everybody(flights: Sequence[Flown]) -> dict[str, Career]:
+    """Return by pilot what they have flown; flights come oldest first."""
+    found: dict[str, Career] = {}
     for pilot in sorted({each.pilot for each in flights}, key=str.casefold):
         theirs = [each for each in flights if each.pilot == pilot]
-        found[pilot] = {
-            "flights": len(theirs),
-            "duration_s": round(sum(each.duration_s for each in theirs), 1),
-            "passed": len({each.mission for each in theirs if each.passed}),
-            "last": theirs[-1].day.isoformat(),
-        }
+        found[pilot] = Career(
+            len(theirs),
+            round(sum(each.duration_s for each in theirs), 1),
+            len({each.mission for each in theirs if each.passed}),
+            theirs[-1].day.isoformat(),
+        )
     return found

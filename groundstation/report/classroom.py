@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import partial
 from typing import NamedTuple
 
 import numpy as np
 
 from groundstation import __version__
+from groundstation.progress import flown as progress_flown
+from groundstation.progress.skills import Standing
 from groundstation.report.document import Finding, Plate, Report, Table
 from groundstation.report.figures import progress
 from groundstation.review.flight import Flight
@@ -60,12 +62,31 @@ def flown(flight: Flight) -> Flown:
     )
 
 
-def report_on(flights: Iterable[Flown], broken: Sequence[str]) -> Report:
+def kept(flight: progress_flown.Flown) -> Flown:
+    """Return what a class's report needs of a flight in the store of progress."""
+    points = np.nan if flight.points is None else flight.points
+    result = {True: "passed", False: "not passed", None: "landed"}[flight.passed]
+    return Flown(
+        flight.pilot,
+        flight.mission,
+        flight.started,
+        flight.passed,
+        points,
+        flight.collisions,
+        result,
+        flight.recording,
+    )
+
+
+def report_on(
+    flights: Iterable[Flown], broken: Sequence[str], standings: Mapping[str, Standing] | None = None
+) -> Report:
     """Return the report on a class.
 
     Args:
         flights: In any order.
         broken: What was said of recordings that could not be read.
+        standings: By pilot, where they come from the store of progress.
     """
     ordered = sorted(flights, key=lambda each: each.started)
     pilots = {
@@ -81,7 +102,7 @@ def report_on(flights: Iterable[Flown], broken: Sequence[str]) -> Report:
     lead = [
         f"{len(ordered)} flights of {len(pilots)} pilots, {ordered[0].started[:10]} to {ordered[-1].started[:10]}."
     ]
-    tables = [_pilots(pilots, needing), _missions(ordered), _flights(ordered)]
+    tables = [_pilots(pilots, needing), *_school(standings or {}), _missions(ordered), _flights(ordered)]
     if broken:
         tables.append(
             Table("Recordings that could not be read", "", ("what is wrong",), [(words,) for words in broken])
@@ -133,6 +154,41 @@ def _pilots(pilots: dict[str, list[Flown]], needing: Sequence[str]) -> Table:
         )
     heads = ("pilot", "flights", "completed", "mean", "best", "last", "collisions", "")
     return Table("Pilots", "Scores of 100.", heads, rows)
+
+
+def _school(standings: Mapping[str, Standing]) -> Iterator[Table]:
+    """Yield what each pilot can do, and what each needs: most help where a level is lowest."""
+    if not standings:
+        return
+    skills = sorted({skill for standing in standings.values() for skill in standing.levels})
+    yield Table(
+        "Skills",
+        f"How the latest flights of each skill went, of 100; ▲ under {_LOW:g}.",
+        ("pilot", *skills),
+        [
+            (name, *(_level(standing.levels.get(skill)) for skill in skills))
+            for name, standing in standings.items()
+        ],
+    )
+    yield Table(
+        "School",
+        "What comes next is what the school recommends.",
+        ("pilot", "passed", "weakest", "next", "why"),
+        [
+            (
+                name,
+                f"{standing.passed} of {len(standing.records)}",
+                standing.weakest or "–",
+                standing.next.mission if standing.next else "–",
+                standing.next.why if standing.next else "",
+            )
+            for name, standing in standings.items()
+        ],
+    )
+
+
+def _level(level: float | None) -> str:
+    return "–" if level is None else f"{'▲ ' if level < _LOW else ''}{level:.0f}"
 
 
 def _missions(flights: Sequence[Flown]) -> Table:

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from groundstation.errors import InputError
+from groundstation.progress.opening import store_in
 from groundstation.report import paper
 from groundstation.report.document import Report
 from groundstation.report.files import files_of, tell, write
@@ -56,6 +57,28 @@ def _compare(asked: argparse.Namespace) -> int:
 
 
 def _class(asked: argparse.Namespace) -> int:
+    return _recorded_class(asked) if asked.flights or not store_in(asked.logs).exists() else _school(asked)
+
+
+def _school(asked: argparse.Namespace) -> int:
+    """Sum up a class from the store of progress, which knows what each pilot has learned."""
+    from groundstation.progress.desk import Desk
+    from groundstation.progress.store import Store
+    from groundstation.report.classroom import kept, report_on
+
+    files = files_of(asked.out or Path("class.html"), with_pdf=asked.pdf)
+    with Store(store_in(asked.logs)) as store:
+        broken = [store.words] if store.words else []
+        flights = [each for each in store.flights() if asked.mission in (None, each.mission)]
+    if not flights:
+        raise InputError(f"{asked.logs}: there are no such flights to sum up; see 'groundstation progress'.")
+    desk = Desk(asked.logs)
+    names = sorted({each.pilot for each in flights}, key=str.casefold)
+    standings = {name: desk.report(name).standing for name in names}
+    return _done(report_on([kept(each) for each in flights], broken, standings), files)
+
+
+def _recorded_class(asked: argparse.Namespace) -> int:
     from groundstation.report.classroom import Flown, flown, report_on
 
     paths = [chosen(named, asked.logs) for named in asked.flights]

@@ -34,7 +34,7 @@ def fill(parser: argparse.ArgumentParser) -> None:
     what = parser.add_mutually_exclusive_group()
     what.add_argument("--compare", action="store_true", help="the flights side by side")
     what.add_argument(
-        "--class", dest="group", action="store_true", help="all flights given, or of the folder, by pilot"
+        "--class", dest="group", action="store_true", help="all flights given, or of the folder's pilots"
     )
     what.add_argument("--paper", action="store_true", help="the paper's experiments, flown in virtual time")
     parser.add_argument("--mission", metavar="NAME", help="with --class: flights of this mission only")

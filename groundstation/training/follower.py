@@ -16,6 +16,7 @@ from groundstation.messages import (
     VEHICLE_STATE,
     VEHICLE_STATUS,
     PointsLost,
+    Severity,
     fit,
 )
 from groundstation.training.attempts import Attempts
@@ -29,6 +30,10 @@ from groundstation.training.sights import Sights
 from groundstation.training.story import Moment
 from sim.airframe import load_airframe
 
+_HELD_UP = (
+    "Held up for seconds, handle samples were missed: 'groundstation review --score' has the exact score."
+)
+
 
 class MissionFollower:
     """Measures a mission in any flight, by hand or headless, from every record and not only from the newest.
@@ -41,14 +46,14 @@ class MissionFollower:
     Attributes:
         attempts: The run's flights.
         judgement: Of the last that landed; None before.
-        complete: No record was missed: held up for seconds, what it says may differ from what the recording says.
+        complete: No record of a flight was missed.
     """
 
     def __init__(self, mission: Mission, bus: Bus, par: Measures | None = None) -> None:
         self.attempts = Attempts(mission, load_airframe(mission.vehicle.airframe).radius)
         self.judgement: Judgement | None = None
         self.complete = True
-        self._par = par
+        self._bus, self._par = bus, par
         self._sights = Sights()
         self._states = bus.subscriber(VEHICLE_STATE)
         self._statuses = bus.subscriber(VEHICLE_STATUS)
@@ -85,7 +90,9 @@ class MissionFollower:
         statuses = list(self._statuses.drain())
         pilots = list(self._pilots.drain())
         handles = list(self._handles.drain())
-        self.complete &= len(handles) < HANDLE.depth
+        if self.complete and self.measurer.flying and len(handles) >= HANDLE.depth:
+            self.complete = False
+            self._bus.event(Severity.WARNING, _HELD_UP)
         self._show(self._sights.take(states, statuses, pilots, handles))
 
     def _show(self, sights: Iterable[VehicleSight | HandSight]) -> None:

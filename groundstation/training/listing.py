@@ -7,6 +7,7 @@ import itertools
 import json
 import sys
 from collections.abc import Mapping
+from pathlib import Path
 from typing import TextIO
 
 from groundstation.errors import InputError
@@ -39,35 +40,36 @@ def show_all(asked: argparse.Namespace) -> int:
 
 def check(asked: argparse.Namespace) -> int:
     """Say for every file whether it can be flown; return 0, 1 where one cannot, 2 where one is no mission."""
-    codes = [0]
-    shipped = {mission.name: mission for _, mission in lessons()}
+    found: dict[Path, Mission] = {}
     for path in asked.files:
         try:
-            mission = load_mission(path)
+            found[path] = load_mission(path)
         except MissionError as error:
             print(f"groundstation: {error}", file=sys.stderr)
-            codes.append(2)
-        else:
-            codes.append(told(str(path), mission, sys.stdout, shipped))
-            if mission.judged and (unmeasured := reference_fault(mission, path)):
-                print(unmeasured)
+    # A mission may need one that comes with the program, or one that is checked with it.
+    known = {mission.name: mission for mission in (*(each.mission for each in lessons()), *found.values())}
+    codes = [0 if found.keys() >= set(asked.files) else 2]
+    for path, mission in found.items():
+        codes.append(told(str(path), mission, sys.stdout, known))
+        if mission.judged and (unmeasured := reference_fault(mission, path)):
+            print(unmeasured)
     return max(codes)
 
 
-def told(where: str, mission: Mission, out: TextIO, shipped: Mapping[str, Mission] | None = None) -> int:
+def told(where: str, mission: Mission, out: TextIO, known: Mapping[str, Mission] | None = None) -> int:
     """Tell what is wrong with a mission, or that nothing is; return 0, or 1 where it cannot be flown as it is.
 
     Args:
         where: What to call it.
         mission: As loaded.
         out: Where to.
-        shipped: The missions that it may need, by name; without them needs are not looked at.
+        known: The missions that it may need, by name; without them needs are not looked at.
     """
     try:
         found = faults(mission, load_airframe(mission.vehicle.airframe))
     except ScenarioError as error:
         raise InputError(f"{where}: vehicle.airframe: {error}") from error
-    found += misplaced(mission, shipped) if shipped is not None else []
+    found += misplaced(mission, known) if known is not None else []
     for sentence in found:
         print(f"{where}: {sentence}", file=out)
     if not found:

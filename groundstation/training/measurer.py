@@ -121,7 +121,7 @@ class Measurer:
         self._mark(sight.t, (x, y, z))
         if director.figures.collisions > collisions:
             self.collisions.append((sight.t, self.nearest((x, y, z))))
-        if self.coupled and self._flying:
+        if self.coupled and self.flying:
             speed = math.hypot(*sight.velocity)
             self.vehicle_rows.append(VehicleRow(sight.t, (x, y, z), speed, director.clearance, off))
 
@@ -129,7 +129,7 @@ class Measurer:
         """Take note of the hand."""
         self.coupled = sight.coupled
         error, force = math.hypot(*sight.error), math.hypot(*sight.force)
-        if not (sight.coupled and self._flying and math.isfinite(error + force)):
+        if not (sight.coupled and self.flying and math.isfinite(error + force)):
             return
         self.director.controller(sight.error, sight.force)
         self.hand_rows.append(HandRow(sight.t, error, sight.disagreement, force, sight.on_leash))
@@ -172,13 +172,14 @@ class Measurer:
         self.end_t, self.place = t, place
 
     @property
-    def _flying(self) -> bool:
+    def flying(self) -> bool:
+        """It has taken off and not landed yet."""
         return self.director.stage not in {Stage.WAITING, Stage.DONE}
 
     def _off(self, leg: int, place: Vector3) -> float:
         """Return how far a place is from the way, m; NaN where the vehicle is not on it any more or not yet."""
         stage = self.director.stage
-        on_it = self._flying and stage not in {Stage.TAKING_OFF, Stage.RETURNING, Stage.FREE}
+        on_it = self.flying and stage not in {Stage.TAKING_OFF, Stage.RETURNING, Stage.FREE}
         return off_the_way(self._way, leg, place) if on_it else math.nan
 
 

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 
+import msgspec
+
 from groundstation.training.measures import Measures
 from groundstation.training.reference import EXPERT, Reference
 
@@ -30,4 +32,4 @@ def _mean(flights: list[Measures]) -> Measures:
         known = [value for each in flights if math.isfinite(value := float(getattr(each, name)))]
         if known and name != "collisions":
             means[name] = math.fsum(known) / len(known)
-    return Measures(**means)
+    return msgspec.convert(means, Measures)

@@ -33,3 +33,27 @@ def told(judgement: Judgement, par_from: str, start: float | None = None) -> Ite
         where = "" if start is None else f" (--at {moment.t - start:.1f})"
         name = "" if index else "points lost"
         yield f"{name:<{NAME}} {f'−{moment.lost:.1f}':>5} at {t}{where}, {moment.part}: {moment.words}"
+
+
+class Landings:
+    """Tells each flight's verdict and score once, when it has landed.
+
+    Args:
+        par_from: Whose flight it is held against, in words, or "".
+    """
+
+    def __init__(self, par_from: str) -> None:
+        self._par_from = par_from
+        self._told: Judgement | None = None
+
+    def news(self, judgement: Judgement | None) -> Iterator[str]:
+        """Yield lines on the last flight that landed, unless they were told already."""
+        if judgement is None or judgement is self._told or judgement.score is None:
+            return
+        self._told = judgement
+        yield (
+            f"Landed, NOT passed: {'; '.join(judgement.shortcomings)}."
+            if judgement.shortcomings
+            else "Passed."
+        )
+        yield from told(judgement, self._par_from)

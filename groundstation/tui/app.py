@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import asyncio
 import datetime
+import gc
 import importlib
 import signal
 import time
@@ -60,6 +61,7 @@ from groundstation.tui.wish import Wish
 _POLL_S = 0.1
 _LOOK_S = 0.5
 _JUDGE_S = 1.0
+_AFTER_PAGE_S = 0.3
 
 
 def _everywhere() -> list[BindingType]:
@@ -321,8 +323,13 @@ class FlightApp(Commanding):
 
     def action_fly(self) -> None:
         """Go back to the flight."""
+        if self.screen is self._flight:
+            return
         while self.screen is not self._flight:
             self.pop_screen()
+        if not coupled(self._snapshot):
+            # What a page leaves is looked through where 0.2 s harm nobody; by itself it hardly is, see `running`.
+            self.set_timer(_AFTER_PAGE_S, gc.collect)
 
     def review_at(self, t: float) -> None:
         """Open the recording in the viewer at a moment, s on the clock of the flight."""

@@ -22,6 +22,7 @@ from groundstation.training.coach import LiveCoach
 from groundstation.training.director import Director
 from groundstation.training.follower import MissionFollower
 from groundstation.training.guide import guide_of
+from groundstation.training.telling import Landings
 from groundstation.tui.acts import ACTS, BY_NAME, Act, Ask, coupled, in_air
 from groundstation.tui.checks import checks
 from groundstation.tui.choices import CHOICES, CHOICES_BY_NAME, Wishes
@@ -290,7 +291,7 @@ def fly_plainly(run: Run, bus: Bus, supervisor: Supervisor) -> int:
     if keepalive is not None:
         keepalive.start()
     try:
-        _loop(flight, follower, keeper, keepalive)
+        _loop(flight, follower, Landings(run.par_from), keeper, keepalive)
     except KeyboardInterrupt:
         flight.leave()
         raise
@@ -307,6 +308,7 @@ def fly_plainly(run: Run, bus: Bus, supervisor: Supervisor) -> int:
 def _loop(
     flight: PlainFlight,
     follower: MissionFollower | None,
+    landings: Landings,
     keeper: Keeper | None,
     keepalive: Keepalive | None,
 ) -> None:
@@ -318,6 +320,8 @@ def _loop(
         flight.turn()
         if follower is not None:
             follower.look(flight.snapshot)
+            for words in landings.news(follower.judgement):
+                _print(words)
         for words in keeper.look() if keeper else ():
             _print(words)
         try:

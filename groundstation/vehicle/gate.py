@@ -85,7 +85,7 @@ class Gate:
 
     def passes(self, frame: bytes) -> bool:
         """Say whether a MAVLink frame may leave; with something behind it, it is none."""
-        number = message_number(frame) if frame and len(frame) == _length(frame, 0) else -1
+        number = message_number(frame) if len(frame) == _length(frame, 0) else -1
         if number == SET_POSITION_TARGET_LOCAL_NED:
             passes = self._is_fresh(frame)
             self.sent += passes
@@ -162,7 +162,9 @@ def split_frames(data: bytes) -> list[bytes]:
 
 
 def _length(data: bytes, start: int) -> int:
-    """Return how long the frame is that begins there: with its checksum, and in MAVLink 2 perhaps a signature."""
+    """Return how long the frame is that begins there, checksum and signature included; 0 where none begins."""
+    if len(data) < start + 8 or data[start] not in {_V1, _V2}:
+        return 0
     if data[start] == _V1:
         return data[start + 1] + 8
-    return data[start + 1] + 12 + 13 * (data[start + 2] & 1) if data[start] == _V2 else 0
+    return data[start + 1] + 12 + 13 * (data[start + 2] & 1)

@@ -69,7 +69,6 @@ class VehicleView:
 
     Attributes:
         attitudes: Those that came and were not taken yet.
-        fresh: A position came since `take_state` was last called.
         boots: How often it has started anew.
         mode_t: When the heartbeat came that `mode` is from, s.
     """
@@ -84,7 +83,8 @@ class VehicleView:
         self._attitude_t = -math.inf
         self._rates = (0.0, 0.0, 0.0)
         self.attitudes: deque[Attitude] = deque(maxlen=_ATTITUDES)
-        self.fresh = False
+        # Copies: what is sent must not change meanwhile, nor go out twice with one time.
+        self._states: deque[VehicleState] = deque(maxlen=1)
         self.mode = FlightMode.UNKNOWN
         self.mode_t = 0.0
         self.armed = False
@@ -119,10 +119,14 @@ class VehicleView:
         fresh = self._clock() - self._attitude_t < _ATTITUDE_S
         return self._state.position[3] if fresh else math.nan
 
+    @property
+    def fresh(self) -> bool:
+        """A position came since `take_state` was last called."""
+        return bool(self._states)
+
     def take_state(self) -> VehicleState:
-        """Return the newest state for publishing."""
-        self.fresh = False
-        return self._state
+        """Return the newest state for publishing, once."""
+        return self._states.popleft()
 
     def _on_attitude(self, angle: plugin.EulerAngle, _: object) -> None:
         boot_t = angle.timestamp_us * 1e-6
@@ -159,7 +163,7 @@ class VehicleView:
         if not all(map(math.isfinite, (*local, *velocity, self._rates[2], self._state.position[3]))):
             self._state.valid = 0
             self._state.t = now
-            self.fresh = True
+            self._states.append(VehicleState.from_buffer_copy(self._state))
             return
         position = self._origin.world(local, armed=self.armed)
         state = self._state
@@ -168,7 +172,7 @@ class VehicleView:
         # A position is worth nothing to equation (3) without a heading of about the same moment.
         state.valid = int(now - self._attitude_t < _ATTITUDE_S)
         state.t = now
-        self.fresh = True
+        self._states.append(VehicleState.from_buffer_copy(state))
 
     def _on_mode(self, mode: plugin.FlightMode, _: object) -> None:
         self.mode = _MODES.get(mode, FlightMode.OTHER)

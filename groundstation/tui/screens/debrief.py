@@ -35,7 +35,7 @@ class Debrief(Page):
     """The outcome above or on the left, the moments that cost points below or on the right."""
 
     NAME = "debrief"
-    HORIZONTAL_BREAKPOINTS: ClassVar = [(0, "-stacked"), (160, "-beside")]
+    HORIZONTAL_BREAKPOINTS = [(0, "-stacked"), (160, "-beside")]  # noqa: RUF012 - Textual's
     OWN_KEYS: ClassVar = (
         ("Enter", "Look at it", "screen.look"),
         ("v", "Viewer", "app.review"),

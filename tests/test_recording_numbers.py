@@ -97,6 +97,7 @@ def full_batch() -> Batch:
         (OBSTACLES, [a_ranges(t, at0=3.0, at18=2.0)]),
         (SERVO_REPORT, [servo]),
         (MISSION_PROGRESS, [progress]),
+        (POINTS_LOST, [PointsLost(t=t, until=t + 2.0, points=4.5, part=b"path")]),
     )
 
 

@@ -26,7 +26,6 @@ CALLS = {
     "os.popen",
     "yaml.load",
     "marshal.loads",
-    "input",
 }
 MODULES = {"pickle", "marshal", "shelve", "dill", "cloudpickle", "telnetlib", "ftplib", "xmlrpc", "xml"}
 NOW = datetime.datetime(2026, 1, 2, 3, 4, 5, tzinfo=datetime.UTC)

@@ -11,7 +11,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 from msgspec.structs import replace
 
-from groundstation.errors import InputError
 from groundstation.fly import accompanied
 from groundstation.fly_options import share
 from groundstation.progress.company import SKILLED, ghost_of, guidance_of
@@ -196,8 +195,8 @@ def test_a_share_is_a_number_from_0_to_1():
             share(wrong)
 
 
-def test_a_store_that_is_none_is_told(tmp_path):
+def test_a_store_that_is_none_is_told_and_is_no_reason_not_to_fly(tmp_path, capsys):
     store_in(tmp_path).mkdir()
-    run = replace(canned_run(), pilot="kim")
-    with pytest.raises(InputError):
-        accompanied(run, asked(tmp_path))
+    run = accompanied(replace(canned_run(), pilot="kim"), asked(tmp_path, ghost="best"))
+    assert run.ghost is None
+    assert "progress cannot be kept there" in capsys.readouterr().err

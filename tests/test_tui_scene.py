@@ -9,8 +9,9 @@ from canned_flight import canned_run
 from hypothesis import given
 from hypothesis import strategies as st
 
+from groundstation.training.guide import Guide
 from groundstation.training.mission import Fence
-from groundstation.tui import scene
+from groundstation.tui import goals, scene
 from groundstation.tui.canvas import Canvas
 from groundstation.tui.theme import Tone
 from groundstation.tui.view import SIDE_EAST, SIDE_NORTH, TOP, View, framing, side_of, zoomed
@@ -107,6 +108,8 @@ def test_obstacles_beside_the_vehicle_are_drawn_solid_others_as_outlines():
     assert Tone.BESIDE in tones(low)
     assert Tone.BESIDE not in tones(high)
     assert Tone.OBSTACLE in tones(high)
+    goals.draw_ways(high, view, MISSION, Guide())
+    assert {Tone.TARGET, Tone.ROUTE} <= tones(high)
 
 
 def test_the_scale_is_as_long_as_it_says():

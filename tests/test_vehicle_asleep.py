@@ -6,6 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from groundstation.config import Safety
 from groundstation.messages import FlightMode, Stream
 from groundstation.vehicle.asleep import Sleep, since_boot
 from groundstation.vehicle.gate import Gate
@@ -49,6 +50,7 @@ def test_what_was_authorised_before_a_sleep_does_not_pass_after_it():
 
     computer = Computer()
     gate = Gate(0.15, computer.sleep.clock)
+    gate.address(1, frozenset())
     made_t = computer.awake
     assert gate.authorise(VELOCITY, made_t + computer.sleep.seconds())
     frame = setpoint()
@@ -58,7 +60,7 @@ def test_what_was_authorised_before_a_sleep_does_not_pass_after_it():
 
 
 def test_a_stream_ends_with_a_hold_and_only_one_that_streams():
-    stream = OffboardStream(0.15)
+    stream = OffboardStream(Safety())
     assert stream.interrupted("it slept") == (Act.NOTHING, "")
     stream.step(Seen(10.0, True, 0.01, FlightMode.HOLD, 0.0))
     assert stream.interrupted("it slept") == (Act.CLOSE_AND_HOLD, "it slept")

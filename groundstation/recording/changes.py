@@ -85,6 +85,7 @@ class Changes:
         for path, said in (
             (entities.REASON, ((state.t, text(state.reason)) for state in pilot)),
             (entities.GUARDED, ((state.t, _guarded(state)) for state in pilot)),
+            (entities.FIRMWARE, ((state.t, text(state.firmware)) for state in status)),
             (entities.UNSAFE, ((state.t, text(state.unsafe) or SAFE) for state in status)),
         ):
             if lines := [(t, words, _INFO) for t, words in self._changed(path, said) if words]:

@@ -235,6 +235,7 @@ _RARE: tuple[tuple[Topic[Any], Quantity, Callable[[Rows], Numbers]], ...] = (
     (HANDLE, schema.HANDLE_READY, _fields("present", "homed")),
     (PILOT_STATE, schema.CENTRED, _fields("centred")),
     (VEHICLE_STATUS, schema.SYSTEM_ID, _fields("system_id")),
+    (VEHICLE_STATUS, schema.AUTOPILOT, _fields("autopilot", "component")),
     (SERVO_REPORT, schema.REALTIME, _fields("realtime")),
     (VEHICLE_STATUS, schema.STATUS, _fields("connected", "armed", "in_air", "mode", "streaming")),
     (VEHICLE_STATUS, schema.SPEED_LIMITS, _fields("speed_limits")),

@@ -8,6 +8,7 @@ SCORE = f"{EVENTS}/score"
 REASON = "/pilot/reason"
 GUARDED = "/pilot/guarded_by"
 UNSAFE = "/vehicle/unsafe"
+FIRMWARE = "/vehicle/firmware"
 PARAMETERS = "/vehicle/parameters"
 INTERVENTIONS = "/interventions"
 # Static text of the whole flight.

@@ -213,6 +213,13 @@ SPEED_LIMITS = Quantity(
 SYSTEM_ID = Quantity(
     "/vehicle/system_id", ("system id",), "count", "on change", "The vehicle's own in MAVLink"
 )
+AUTOPILOT = Quantity(
+    "/vehicle/autopilot",
+    ("autopilot", "component"),
+    "code",
+    "on change",
+    "Which it is, `Autopilot`, and its MAVLink component; `/vehicle/firmware` has its version",
+)
 BOOT_TIME = Quantity(
     "/vehicle/boot_time", ("boot time",), "s", "telemetry", "Vehicle's own clock at the state"
 )
@@ -316,7 +323,7 @@ QUANTITIES: tuple[Quantity, ...] = (
     FORCE_CUE, ENVIRONMENT_CUE, MISMATCH_CUE, GUARD_CUE, DAMPING_CUE, GUIDANCE_CUE, CUE_SIZES, CUES_ON,
     PREDICTED, PREDICTED_VELOCITY, STOP, PUSH,
     *REFERENCES, *EXECUTED,
-    POSITION, VELOCITY, UNTRUSTED, ATTITUDE, RAW_ATTITUDE, RAW_RATES, SYSTEM_ID, BOOT_TIME,
+    POSITION, VELOCITY, UNTRUSTED, ATTITUDE, RAW_ATTITUDE, RAW_RATES, SYSTEM_ID, AUTOPILOT, BOOT_TIME,
     BATTERY, VOLTAGE, HEALTH_BITS, STATUS, SPEED_LIMITS,
     RING, RANGES, RANGE_LIMIT,
     STATE_AGE, HANDLE_AGE, ROUND_TRIP, RECKONED, SILENCE,

@@ -334,7 +334,7 @@ QUANTITIES: tuple[Quantity, ...] = (
 )  # fmt: skip
 
 # In which version a quantity was added, where that is not the first.
-SINCE = {GUIDANCE_CUE: 5}
+SINCE = {GUIDANCE_CUE: 5, SPEED_LIMITS: 5, AUTOPILOT: 5, LOST: 5}
 
 FORCE_SIZE = Quantity(
     "/handle/force_size",

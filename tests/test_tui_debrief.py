@@ -31,9 +31,11 @@ class Watched:
 
 
 @asynccontextmanager
-async def debrief(size=(120, 40), best: Score | None = None):
+async def debrief(size=(120, 40), best: Score | None = None, guidance: float = 0.0):
     """Show the debrief of the canned flight, landed."""
-    run = msgspec.structs.replace(canned_run(), par=PAR, par_from="the expert operator on seed 0")
+    run = msgspec.structs.replace(
+        canned_run(), par=PAR, par_from="the expert operator on seed 0", guidance=guidance
+    )
     flight, kept = CannedFlight(run), []
     flight.advance(0.3)
     reader, follower = CannedReader(flight.snapshot()), Flown(run)
@@ -67,6 +69,13 @@ async def test_it_tells_the_verdict_the_parts_and_what_they_were_held_against():
             assert f"{part.points:4.1f} of {part.weight:4.1f}" in row
         assert "par 32 s" in outcome
         assert "the expert operator on seed 0" in outcome
+
+
+async def test_what_was_flown_with_help_says_so():
+    async with debrief(guidance=0.6) as scene:
+        assert "60% of the force that leads to the way" in shown(scene, "#outcome")
+    async with debrief() as scene:
+        assert "guidance" not in shown(scene, "#outcome")
 
 
 async def test_a_moment_is_chosen_and_looked_at_in_the_viewer():

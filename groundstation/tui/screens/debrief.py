@@ -131,6 +131,8 @@ def _score(frame: Frame, score: Score | None, best: Score | None, width: int) ->
     for part in score.parts:
         yield _part(part, before.get(part.name, math.nan), width)
     yield _line("par", frame.run.par_from or NO_PAR, Tone.MUTED)
+    if frame.run.guidance > 0.0:
+        yield _line("guidance", f"{frame.run.guidance:.0%} of the force that leads to the way", Tone.MUTED)
 
 
 def _against(score: Score, best: Score | None) -> Row:

@@ -24,20 +24,15 @@ from groundstation.console import Snapshot
 from groundstation.messages import CommandKind, FlightMode, Severity
 from groundstation.progress.desk import Desk
 from groundstation.progress.keeper import Keeper
-from groundstation.progress.skills import Advice
 from groundstation.run import Run, start_of
 from groundstation.training.coach import LiveCoach
-from groundstation.training.director import Director, Stage
 from groundstation.training.follower import MissionFollower
-from groundstation.training.guide import Guide, guide_of
-from groundstation.training.score import Score, score_of
 from groundstation.training.workload import Workload
-from groundstation.tui.acts import ACTS, URGENT, Act, armed, coupled, in_air
+from groundstation.tui.acts import ACTS, URGENT, Act, coupled, in_air
 from groundstation.tui.alarms import Alarms
 from groundstation.tui.alerts import conditions
 from groundstation.tui.checks import red
 from groundstation.tui.choices import CHOICES, PRESETS_EXPLAINED, Choice
-from groundstation.tui.commanding import Commanding
 from groundstation.tui.everywhere import KEYS
 from groundstation.tui.frame import Frame, Reader, Supervisor, workspace
 from groundstation.tui.guarding import GuardWatch
@@ -48,6 +43,7 @@ from groundstation.tui.milestones import Milestones
 from groundstation.tui.pace import PaintPace
 from groundstation.tui.pages import PAGES, PAGES_BY_NAME
 from groundstation.tui.releases import PREFIX, driver_for
+from groundstation.tui.schooling import Schooling
 from groundstation.tui.screens.dialog import Confirm
 from groundstation.tui.screens.flight import STEPS, FlightScreen
 from groundstation.tui.screens.help import Help
@@ -56,11 +52,9 @@ from groundstation.tui.theme import THEME, THEMES, next_theme
 from groundstation.tui.track import History, Track
 from groundstation.tui.viewer import Viewer
 from groundstation.tui.widgets.stick import YAW, stays
-from groundstation.tui.wish import Wish
 
 _POLL_S = 0.1
 _LOOK_S = 0.5
-_JUDGE_S = 1.0
 _AFTER_PAGE_S = 0.3
 
 
@@ -86,7 +80,7 @@ def _everywhere() -> list[BindingType]:
     ]
 
 
-class FlightApp(Commanding):
+class FlightApp(Schooling):
     """The screen of a run.
 
     Args:
@@ -98,7 +92,7 @@ class FlightApp(Commanding):
         coach: Tells the trainee what to do instead, if there is one.
         desk: Knows the pilots and the course; the one of the run's folder where none is given.
         keeper: Keeps the flights that land, if they are anybody's.
-        instructing: Instructing | None = None,
+        instructing: Lets wind and failures happen for a class of one.
         on_workload: Keeps what was answered after a flight.
         clock: Monotonic seconds, the bus's clock.
     """
@@ -123,7 +117,15 @@ class FlightApp(Commanding):
         on_workload: Callable[[Workload], None] = lambda _: None,
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
-        super().__init__(run, console)
+        super().__init__(
+            run,
+            console,
+            follower=follower,
+            coach=coach,
+            desk=desk,
+            keeper=keeper,
+            on_workload=on_workload,
+        )
         for theme in THEMES:
             self.register_theme(theme)
         self.theme = THEME.name
@@ -134,16 +136,9 @@ class FlightApp(Commanding):
         self._alarms, self._pace = Alarms(), PaintPace(run.settings.rates.screen)
         self._started = self._snapshot.t
         self._start = start_of(run.started, datetime.datetime.now().astimezone(), clock())
-        self._next_poll = self._next_look = self._next_score = 0.0
+        self._next_poll = self._next_look = 0.0
         self._keepalive = Keepalive(self._send_stick, clock)
-        self._follower, self._coach = follower, coach
-        self.desk, self._keeper = desk or Desk(run.recording.parent), keeper
-        self.best = self.desk.best(run.pilot, run.mission, run.par) if run.mission else None
-        self._on_workload = on_workload
-        self.advice: Advice | None = None
-        self.wish: Wish | None = None
         self._instructing = instructing or Instructing(None)
-        self._score: Score | None = None
         self._flight = FlightScreen(self.hand if stick is not None else None)
         self._milestones, self._viewer = Milestones(), Viewer()
         self._latest: Frame | None = None
@@ -171,10 +166,7 @@ class FlightApp(Commanding):
         """Take the newest of everything and show it."""
         self._keepalive.turned()
         snapshot = self._snapshot = self._reader.snapshot()
-        if self._follower is not None:
-            self._follower.look(snapshot)
-            self._judge(self._follower, snapshot.t)
-            self._keep()
+        self.follow(snapshot)
         polled = snapshot.t >= self._next_poll
         if polled:
             self._next_poll = snapshot.t + _POLL_S
@@ -202,22 +194,6 @@ class FlightApp(Commanding):
             self._next_look = snapshot.t + _LOOK_S
             self._look_around(frame)
 
-    def _judge(self, follower: MissionFollower, t: float) -> None:
-        """Work out the score so far; it takes some milliseconds, so not in every frame."""
-        if t >= self._next_score:
-            self._next_score = t + _JUDGE_S
-            measurer = follower.measurer
-            self._score = score_of(measurer.director.mission, measurer.measures(), self._flight_run.par)
-
-    def _keep(self) -> None:
-        """Have what has landed kept; once it is, look what comes next."""
-        if self._keeper is None:
-            return
-        for words in self._keeper.look():
-            self.notify(words, severity="warning", timeout=10.0, markup=False)
-        if self._keeper.fresh():
-            self.advice = self.desk.report(self.pilot).standing.next
-
     def _look_around(self, frame: Frame) -> None:
         """Show the page that is due, but never in place of what the operator looks at."""
         if failure := self._viewer.failure():
@@ -230,43 +206,9 @@ class FlightApp(Commanding):
         """The page that stands over the flight, if one does."""
         return next((screen for screen in self.screen_stack if isinstance(screen, Page)), None)
 
-    @property
-    def pilot(self) -> str:
-        """Who flies."""
-        return self._flight_run.pilot
-
-    def action_next(self) -> None:
-        """Fly what the school recommends."""
-        if self.advice is None:
-            self.action_page("school")
-        else:
-            self.fly_next(Wish(self.advice.mission, self.pilot))
-
-    def fly_next(self, wish: Wish) -> None:
-        """Leave this run and have the next one begin with what is wished: on the ground, and simulated only."""
-        mission, director = self._flight_run.mission, self.director
-        if not self._flight_run.simulated:
-            words = "A real vehicle is flown as it was connected: leave with q, and choose the mission then."
-            self.notify(words, severity="warning", timeout=6.0)
-        elif armed(self._snapshot) or in_air(self._snapshot) or coupled(self._snapshot):
-            self.notify("Land and disarm first.", severity="warning", timeout=4.0)
-        elif mission and director and director.stage is Stage.WAITING and wish == (mission.name, self.pilot):
-            # It is this one that waits to be flown.
-            self.action_fly()
-        else:
-            self.wish = wish
-            self._leave()
-
-    @property
-    def director(self) -> Director | None:
-        """Knows how the mission is going, if there is one."""
-        return self._follower.director if self._follower is not None else None
-
     def _frame(self, snapshot: Snapshot) -> Frame:
-        director, guide, coaching = self.director, None, ""
-        if director is not None:
-            guide = guide_of(director, snapshot.t)
-            coaching = self._coached(snapshot, guide, director.clearance)
+        director = self.director
+        guide, coaching = self.guided(snapshot, quiet=self._alarms.first() is not None)
         return Frame(
             snapshot=snapshot,
             run=self._flight_run,
@@ -286,11 +228,6 @@ class FlightApp(Commanding):
             alarms=self._alarms,
             paint_hz=self._pace.rate,
         )
-
-    def _coached(self, snapshot: Snapshot, guide: Guide, clearance: float) -> str:
-        if self._coach is None:
-            return ""
-        return self._coach.look(snapshot, guide, clearance, quiet=self._alarms.first() is not None)
 
     def _send_stick(self) -> None:
         if self._stick is not None:
@@ -335,12 +272,6 @@ class FlightApp(Commanding):
         """Open the recording in the viewer at a moment, s on the clock of the flight."""
         self.action_review(max(t - self._start, 0.0))
 
-    def take_workload(self, workload: Workload | None) -> None:
-        """Keep how hard it was, unless that was not said."""
-        if workload is not None:
-            self._on_workload(workload)
-            self.notify(f"Kept: workload {workload.raw:.0f} of 100.", timeout=3.0)
-
     def action_review(self, at: float | None = None) -> None:
         """Open the recording in the viewer, at a time of the recording, s, or at its beginning."""
         if coupled(self._snapshot) or in_air(self._snapshot):
@@ -379,11 +310,11 @@ class FlightApp(Commanding):
             return
         if in_air(self._snapshot):
             text = "The hand is uncoupled. A coupled vehicle holds; one that lands or returns goes on."
-            self.ask("The vehicle is in the air. Quit?", text, self._leave, key="q")
+            self.ask("The vehicle is in the air. Quit?", text, self.leave, key="q")
         else:
-            self._leave()
+            self.leave()
 
-    def _leave(self) -> None:
+    def leave(self) -> None:
         """End the screen; a vehicle that follows the hand is left holding."""
         self.hand.centre()
         status = self._snapshot.status

@@ -1,4 +1,4 @@
-"""What the screen knows of learning: how the mission goes, what a coach says, who flew what, and what comes next."""
+"""What the screen knows of learning: how the mission goes, what a coach says, who flew what, and what comes next.
 
 The part of the application between commanding (`groundstation.tui.commanding`) and showing (`groundstation.tui.app`).
 """

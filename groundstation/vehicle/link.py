@@ -71,6 +71,8 @@ _REASON_S = 1.5
 _LEAVE_S = 0.2
 _SILENT = BY_FAULT[Fault.LINK_SILENT]
 _M_ARENA_MAX = -8
+# Three heartbeats: a vehicle whose heartbeats tell no autopilot that is known has none.
+_INTRODUCTION_S = 3.0
 
 # Commands that are the pilot's to follow and to answer.
 _PILOTS = frozenset(
@@ -121,6 +123,7 @@ class Link:
         self._obstacles: ObstacleView | None = None
         self._desk: ParameterDesk | None = None
         self._identity: Identity | None = None
+        self._met_t = 0.0
         self._interventions = Interventions(bus, simulated=run.simulated)
         self._given = 0
         self._denials: deque[tuple[float, str]] = deque(maxlen=4)
@@ -184,7 +187,11 @@ class Link:
             return
         self._next_discovery = now + _DISCOVERY_S
         system = next((system for system in self._mav.get_systems() if system.has_autopilot()), None)
-        if system is not None:
+        if system is None:
+            return
+        # Another message may come first; what the autopilot is, only its heartbeat tells.
+        self._met_t = self._met_t or now
+        if profile_of(system.autopilot_type()) or now - self._met_t > _INTRODUCTION_S:
             self._attach(system)
 
     def _attach(self, system: System) -> None:

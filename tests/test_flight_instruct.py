@@ -81,7 +81,7 @@ def test_what_is_let_happen_happens_to_the_vehicle_and_is_recorded(tmp_path):
         until(lambda view: abs(view.status.battery - 0.4) < 0.02, 10, "so much is left")
         done(program, "delay", "300")
         until(lambda view: 0.25 < view.status.rtt < 0.6, 15, "frames take their time")
-        assert "in force  round trip 300 ms" in done(program, "status")
+        assert "round trip 300 ms" in done(program, "status")
 
         done(program, "device-loss", "4")
         until(lambda view: not view.device.present, 5, "the device is gone")

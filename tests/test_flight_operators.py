@@ -14,8 +14,9 @@ def test_the_expert_passes_the_check_ride_over_real_processes(tmp_path):
         *("--json", "--logs", str(tmp_path)),
     )
     assert done.returncode == 0, done.stderr
-    measures = json.loads(done.stdout)["measures"]
-    assert (measures["reached"], measures["gates_missed"], measures["collisions"]) == (1.0, 0.0, 0)
+    summary = json.loads(done.stdout)
+    measures = summary["measures"]
+    assert (measures["reached"], measures["gates_missed"], summary["collisions"]) == (1.0, 0.0, 0)
     assert measures["landing_error_m"] < 0.7
     # The handle that the timetable took away was lost, waited for, and coupled again.
     told = done.stderr.splitlines()

@@ -185,8 +185,8 @@ def test_a_folder_that_cannot_be_written_is_an_alarm_and_the_recorder_lives(tmp_
 def test_a_disk_that_fills_is_an_alarm_and_what_was_written_stays_readable(tmp_path):
     with recorder(a_run(tmp_path / "flight")) as running:
         until(running.path.is_file, "the file")
-        # What stands still takes 0.4 MB, and all of the flight 0.25 MB more.
-        resource.prlimit(running.process.pid, resource.RLIMIT_FSIZE, (550_000, 550_000))
+        # What stands still takes 0.5 MB, and all of the flight 0.3 MB more.
+        resource.prlimit(running.process.pid, resource.RLIMIT_FSIZE, (680_000, 680_000))
         running.publish_handles(TICKS)
         until(lambda: running.said(Severity.ALARM, "This flight is no longer recorded"), "the alarm")
         assert running.process.poll() is None

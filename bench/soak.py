@@ -263,12 +263,12 @@ class Result(NamedTuple):
         """The share of ticks that were kept."""
         return self.ticks / max(1, self.ticks + self.missed)
 
-    def violations(self, growth_mb: float = GROWTH_BAR_MB) -> list[str]:
+    def violations(self) -> list[str]:
         """Return in words what is not as it must be."""
         grown = [
             f"{role} has grown"
             for role, growth in self.grown.items()
-            if growth.memory > growth_mb or growth.descriptors > 0
+            if growth.memory > GROWTH_BAR_MB or growth.descriptors > 0
         ]
         died = [f"{role} has died" for role in self.dead]
         late = [f"{self.kept:.1%} of the ticks"] if self.kept < TICKS_BAR else []

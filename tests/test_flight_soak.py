@@ -16,8 +16,6 @@ pytestmark = [pytest.mark.flight, pytest.mark.timeout(400)]
 
 # The first two minutes: pages that are looked at for the first time, a store that is opened, tracks that fill.
 STARTING_MB, STARTING_DESCRIPTORS = 30.0, 8
-# What is read in the moment of a cut has the old socket and the new one.
-CHANGING = 2
 
 
 def test_random_faults_kill_nothing_and_let_nothing_run_away():
@@ -40,7 +38,8 @@ def test_random_faults_kill_nothing_and_let_nothing_run_away():
 
 def test_a_link_connected_and_cut_off_again_and_again_keeps_nothing():
     readings = reconnect.cycles(20)
-    grown = gauges.growth(readings[5:])
+    # What is read in the moment of a cut has the old socket and the new one: the middle of half of them has not.
+    grown = gauges.growth(readings[5:], share=0.5)
     print(grown)
-    assert grown.descriptors <= CHANGING
+    assert grown.descriptors <= 0
     assert grown.memory < 1.0

@@ -96,11 +96,11 @@ class MissionFollower:
         self._show(self._sights.take(states, statuses, pilots, handles))
 
     def _show(self, sights: Iterable[VehicleSight | HandSight]) -> None:
-        landed = len(self.attempts.landed)
+        ended = False
         for sight in sights:
-            self.attempts.show(sight)
-        if len(self.attempts.landed) > landed:
-            self.judgement = judgement_of(self.attempts.landed[-1], self._par)
+            ended |= self.attempts.show(sight)
+        if ended:
+            self.judgement = judgement_of(self.attempts.judged, self._par)
             self._tell(self.judgement.story)
 
     def _tell(self, story: Iterable[Moment]) -> None:

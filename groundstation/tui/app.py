@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import asyncio
 import datetime
-import gc
 import importlib
 import signal
 import time
@@ -28,6 +27,7 @@ from groundstation.run import Run, start_of
 from groundstation.training.coach import LiveCoach
 from groundstation.training.follower import MissionFollower
 from groundstation.training.workload import Workload
+from groundstation.tui import memory
 from groundstation.tui.acts import ACTS, URGENT, Act, coupled, in_air
 from groundstation.tui.alarms import Alarms
 from groundstation.tui.alerts import conditions
@@ -55,7 +55,6 @@ from groundstation.tui.widgets.stick import YAW, stays
 
 _POLL_S = 0.1
 _LOOK_S = 0.5
-_AFTER_PAGE_S = 0.3
 
 
 def _everywhere() -> list[BindingType]:
@@ -159,8 +158,14 @@ class FlightApp(Schooling):
             # Ended from outside, or the terminal has gone: out by the same door, terminal restored.
             loop.add_signal_handler(number, self._end, 128 + number)
         self.set_interval(1.0 / self._flight_run.settings.rates.screen, self.pull)
+        self.set_interval(memory.TIDY_S, memory.tidy)
         if self._stick is not None:
             self._keepalive.start()
+
+    def on_ready(self) -> None:
+        """The flight is shown; a test that shows many screens keeps none of them."""
+        if not self.is_headless:
+            memory.settle()
 
     def pull(self) -> None:
         """Take the newest of everything and show it."""
@@ -264,9 +269,6 @@ class FlightApp(Schooling):
             return
         while self.screen is not self._flight:
             self.pop_screen()
-        if not coupled(self._snapshot):
-            # What a page leaves is looked through where 0.2 s harm nobody; by itself it hardly is, see `running`.
-            self.set_timer(_AFTER_PAGE_S, gc.collect)
 
     def review_at(self, t: float) -> None:
         """Open the recording in the viewer at a moment, s on the clock of the flight."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import gc
 import sys
 from collections.abc import Callable
 
@@ -15,14 +14,13 @@ from groundstation.training.asking import Asker
 from groundstation.training.coach import LiveCoach
 from groundstation.training.follower import MissionFollower
 from groundstation.training.workload import Workload
+from groundstation.tui import memory
 from groundstation.tui.app import FlightApp
 from groundstation.tui.frame import Reader, Supervisor
 from groundstation.tui.hand import StickSender
 from groundstation.tui.hangup import HangupWatch
 from groundstation.tui.instructing import Instructing
 from groundstation.tui.wish import Ending
-
-_SWITCH_S = 0.001
 
 
 def run_screen(
@@ -49,18 +47,12 @@ def run_screen(
         instructing=instructing,
         on_workload=on_workload,
     )
-    # A collection that looks through all the modules again takes 0.2 s, and a stick is stale after 0.1 s.
-    gc.collect()
-    gc.freeze()
-    # Nor may painting keep the stick's thread waiting: it asks for its turn and gets it within a millisecond, and the
-    # young objects of some thousand frames are looked through before all are.
-    sys.setswitchinterval(_SWITCH_S)
-    gc.set_threshold(2_000, 20, 1_000)
     watch = HangupWatch(sys.stdin.fileno())
     try:
         code = app.run()
     finally:
         watch.stop()
+        memory.leave()
     return Ending((app.return_code or 0) if code is None else code, app.wish)
 
 

@@ -14,8 +14,8 @@ from bench import gauges, reconnect, soak
 
 pytestmark = [pytest.mark.flight, pytest.mark.timeout(600)]
 
-# Five minutes are still a beginning, MB: pages are looked at for the first time, pools and tracks fill. The first landing
-# that costs points opens one more connection of the bus, which is three descriptors.
+# Five minutes are still a beginning, MB: pages are looked at for the first time, pools and tracks fill. The first
+# landing that costs points opens one more connection of the bus, which is three descriptors.
 STARTING_MB, STARTING_DESCRIPTORS = 10.0, 3
 
 

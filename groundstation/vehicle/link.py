@@ -7,7 +7,6 @@ bus ◄──state, obstacles, status, answers, events── VehicleView, Obstac
 from __future__ import annotations
 
 import contextlib
-import ctypes
 import math
 import queue
 import threading
@@ -47,6 +46,7 @@ from groundstation.run import Run
 from groundstation.vehicle.asleep import Sleep
 from groundstation.vehicle.commander import STEERING, Answer, Commander
 from groundstation.vehicle.gate import Gate
+from groundstation.vehicle.heap import Trimmer, take_one_arena
 from groundstation.vehicle.identity import Identity
 from groundstation.vehicle.interventions import Interventions
 from groundstation.vehicle.obstacle_view import ObstacleView
@@ -70,7 +70,6 @@ _DEFAULT_TAKEOFF_M = 2.0
 _REASON_S = 1.5
 _LEAVE_S = 0.2
 _SILENT = BY_FAULT[Fault.LINK_SILENT]
-_M_ARENA_MAX = -8
 # Three heartbeats: a vehicle whose heartbeats tell no autopilot that is known has none.
 _INTRODUCTION_S = 3.0
 
@@ -350,7 +349,8 @@ class Link:
 
 def body(run: Run, bus: Bus, lifeline: Lifeline) -> None:
     """Run the link until the lifeline ends."""
-    _take_one_arena()
+    take_one_arena()
+    trimmer = Trimmer()
     notes: Notes = queue.SimpleQueue()
     # It complains of a connection that is about to come; its lines count from when that is there. Subscribing
     # anew then would free the callback that a thread of MAVSDK's may be in.
@@ -378,6 +378,7 @@ def body(run: Run, bus: Bus, lifeline: Lifeline) -> None:
     try:
         while lifeline.holds():
             link.turn()
+            trimmer.look(time.monotonic())
             link.wait()
         link.leave()
     finally:
@@ -388,15 +389,6 @@ def body(run: Run, bus: Bus, lifeline: Lifeline) -> None:
         if tlog:
             tlog.close()
         mavsdk.log_unsubscribe()
-
-
-def _take_one_arena() -> None:
-    """Have all threads take their memory from one place, where the C library lets them (mallopt(3)).
-
-    glibc gives each its own. What MAVSDK's threads take there and ours give back is not found again: 2 MB a minute.
-    """
-    with contextlib.suppress(AttributeError, OSError):
-        ctypes.CDLL(None).mallopt(_M_ARENA_MAX, 1)
 
 
 def _open_tlog(run: Run, notes: Notes) -> TlogWriter | None:

@@ -6,7 +6,6 @@ bus ◄──state, obstacles, status, answers, events── VehicleView, Obstac
 
 from __future__ import annotations
 
-import contextlib
 import math
 import queue
 import threading

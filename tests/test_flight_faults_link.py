@@ -107,6 +107,59 @@ def test_another_that_takes_over_is_shown_within_1500_ms_and_not_fought(flight):
     assert holds(flight.tap)
 
 
+def asked_speed(flight, since: float) -> float:
+    """Return the largest speed around that left since a moment, m/s."""
+    return max((math.hypot(*asked(data)[:2]) for t, data in flight.tap.setpoints if t > since), default=0.0)
+
+
+def test_a_speed_limit_that_another_station_lowers_in_flight_is_kept_at_once(flight):
+    until(lambda: asked_speed(flight, 0.0) > 0.6, 5, "it is flown fast")
+    lowered = time.monotonic()
+    set_parameters(flight.tap, MPC_XY_VEL_MAX=0.5)
+    try:
+        told = flight.told("MPC_XY_VEL_MAX is 0.5 now, was 12", lowered)
+        flight.uncoupled(1.0)
+        assert told - lowered < 0.5
+        until(lambda: holds(flight.tap), 6, "the vehicle holds")
+        assert last_faster(flight, lowered, 0.5) < 0.5
+        flight.hand.put((0.0, 0.0, 0.0))
+        flight.engage()
+        flight.hand.put((0.03, 0.0, 0.0))
+        flight.tap.setpoints.clear()
+        until(lambda: asked_speed(flight, 0.0) > 0.4, 5, "it is flown again")
+        time.sleep(1.0)
+        assert asked_speed(flight, 0.0) <= 0.5 + 1e-3
+    finally:
+        set_parameters(flight.tap, MPC_XY_VEL_MAX=12.0)
+        flight.told("MPC_XY_VEL_MAX is 12 now, was 0.5", lowered)
+
+
+def last_faster(flight, since: float, speed: float) -> float:
+    """Return how long after a moment the last setpoint left that asks for more than a speed, s."""
+    return max(
+        (t - since for t, data in flight.tap.setpoints if math.hypot(*asked(data)[:2]) > speed + 1e-3),
+        default=0.0,
+    )
+
+
+def test_a_failsafe_that_another_station_disarms_while_the_link_is_down_is_read_when_it_is_back(flight):
+    """What is told while nobody hears it is lost: it is asked for."""
+    cut = flight.cut()
+    flight.uncoupled(3.0)
+    set_parameters(flight.tap, COM_OBL_RC_ACT=7)
+    time.sleep(0.2)
+    try:
+        mended = flight.mend()
+        assert flight.told("COM_OBL_RC_ACT is 7 now, was 0: Disarm", mended) > cut
+        flight.see(lambda view: b"COM_OBL_RC_ACT = 7" in view.status.unsafe, 1.0, "called unsafe")
+        flight.hand.put((0.0, 0.0, 0.0))
+        flight.program.console.command(CommandKind.ENGAGE)
+        flight.told("Engage refused: COM_OBL_RC_ACT = 7", mended)
+    finally:
+        set_parameters(flight.tap, COM_OBL_RC_ACT=0)
+        flight.told("COM_OBL_RC_ACT is 0 now, was 7", cut)
+
+
 @pytest.mark.parametrize("seconds", [0.5, 2.0, 5.0, 30.0])
 def test_a_link_that_is_cut_is_told_takes_the_force_and_does_not_resume_by_itself(flight, seconds):
     cut = flight.cut()

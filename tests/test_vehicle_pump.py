@@ -187,3 +187,48 @@ def test_mavsdk_is_heard_through_the_pump():
         pump.stop()
         mav.destroy()
         vehicle.close()
+
+
+class Station:
+    """A way that brings what was put in, and takes everything."""
+
+    def __init__(self, *datagrams):
+        self.left = list(datagrams)
+
+    def receive(self):
+        time.sleep(0.001)
+        return self.left.pop(0) if self.left else b""
+
+    def send(self, data):
+        pass
+
+    def close(self):
+        pass
+
+
+def test_another_station_on_the_link_is_not_taken_for_the_vehicle():
+    """Radios and routers pass on what other stations say: a vehicle that is silent stays silent for that."""
+    from groundstation.vehicle.gate import Gate
+    from groundstation.vehicle.pump import Pump
+
+    def heartbeat(system: int, component: int) -> bytes:
+        sender = mavlink.MAVLink(None, srcSystem=system, srcComponent=component)
+        return bytes(sender.heartbeat_encode(6, 8, 0, 0, 4).pack(sender))
+
+    class Mav:
+        def subscribe_raw_bytes_to_be_sent(self, _):
+            pass
+
+        add_any_connection = pass_received_raw_bytes = subscribe_raw_bytes_to_be_sent
+
+    times = iter(range(1, 100))
+    way = Station(heartbeat(1, 1), *(heartbeat(254, 190) for _ in range(5)))
+    pump = Pump(way, Gate(0.15, time.monotonic), None, lambda: next(times))
+    pump.watch(1)
+    pump.start(Mav())
+    deadline = time.monotonic() + 5
+    while way.left and time.monotonic() < deadline:
+        time.sleep(0.005)
+    pump.stop()
+    assert not way.left
+    assert pump.heard_t == 1

@@ -206,6 +206,7 @@ class Link:
         self._identity = Identity(system, time.monotonic)
         self._interventions.attach(system, self._gate, lambda: time.monotonic() - self._pump.heard_t)
         self._view.attach(system, self._run.settings.rates.telemetry)
+        self._pump.watch(system.get_system_id())
         self._status.system_id, self._status.autopilot = system.get_system_id(), system.autopilot_type()
         kind = profile.label if profile else "unknown autopilot"
         words = f"Vehicle {self._status.system_id}, {kind}, found on {self._run.url}."
@@ -346,6 +347,8 @@ class Link:
             self._silent = silent
             words = _SILENT.say(seen) if silent else "The vehicle is heard again."
             self._bus.event(_SILENT.severity if silent else Severity.INFO, words)
+            if self._desk and not silent:
+                self._desk.ask_again()
 
 
 def body(run: Run, bus: Bus, lifeline: Lifeline) -> None:

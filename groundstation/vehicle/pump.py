@@ -77,7 +77,8 @@ class Pump:
         signing: Signs what leaves and judges what comes; None where nothing is signed and everything heard.
 
     Attributes:
-        heard_t: When the last frame came of a system that has introduced itself by a heartbeat; 0 before.
+        heard_t: When the last frame came of the vehicle, or before that is known of any system that has introduced
+            itself by a heartbeat; 0 before.
         refused: How many frames were not heard, for their signature.
     """
 
@@ -98,6 +99,7 @@ class Pump:
         self._parser.robust_parsing = True
         self._losses = Losses()
         self._known: set[int] = set()
+        self._vehicle = 0
         self._lock = threading.Lock()
         self._running = True
         self._thread: threading.Thread | None = None
@@ -118,6 +120,10 @@ class Pump:
         if self._thread is not None:
             self._thread.join()
         self._transport.close()
+
+    def watch(self, system: int) -> None:
+        """Watch this system only: another station that is heard on the same link is not the vehicle."""
+        self._vehicle = system
 
     def loss(self) -> float:
         """Return the share of frames lost in the last seconds, 0 to 1."""
@@ -160,8 +166,10 @@ class Pump:
         # Noise on a serial line can look like a frame, but hardly like one of a system that is known.
         if system not in self._known:
             return
+        if self._tlog:
+            self._tlog.write(frame)
+        if system != (self._vehicle or system):
+            return
         self.heard_t = now
         with self._lock:
             self._losses.count(now, system, component, sequence)
-        if self._tlog:
-            self._tlog.write(frame)

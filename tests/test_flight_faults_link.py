@@ -79,6 +79,7 @@ def test_a_mode_that_is_denied_is_explained_within_a_second_and_nothing_is_coupl
     until(lambda: holds(flight.tap), 6, "the vehicle holds")
     # The vehicle hears no setpoint, and denies Offboard for that.
     flight.tap.passes = lambda data: not (data[0] == 0xFD and data[7] == SETPOINT_ID)
+    flight.program.screen.clear()
     began = time.monotonic()
     flight.program.console.command(CommandKind.ENGAGE)
     denied = until(
@@ -87,6 +88,8 @@ def test_a_mode_that_is_denied_is_explained_within_a_second_and_nothing_is_coupl
         "the vehicle denies it",
     )
     assert flight.told("no setpoints are coming", began) - denied < 1.0
+    until(lambda: b"no setpoints" in flight.program.screen, 2, "the screen shows why")
+    assert time.monotonic() - denied < 1.0
     flight.uncoupled()
     flight.mend()
     flight.stays_uncoupled(1.0)
@@ -181,7 +184,9 @@ def test_a_link_that_is_cut_is_told_takes_the_force_and_does_not_resume_by_itsel
     ("conditions", "stays"),
     [
         ({"DELAY": 0.025, "JITTER": 0.01, "LOSS": 0.01, "REORD": 0.1, "DUP": 0.1}, True),
+        ({"DELAY": 0.025, "JITTER": 0.05, "LOSS": 0.3, "REORD": 0.3, "DUP": 0.3}, False),
         ({"DELAY": 0.15, "JITTER": 0.05, "LOSS": 0.1, "REORD": 0.2, "DUP": 0.2}, True),
+        ({"DELAY": 0.35, "JITTER": 0.1, "LOSS": 0.01, "REORD": 0.1, "DUP": 0.1}, False),
         ({"DELAY": 0.35, "JITTER": 0.1, "LOSS": 0.3, "REORD": 0.3, "DUP": 0.3}, False),
     ],
 )
@@ -218,6 +223,7 @@ def apply(flight, conditions) -> None:
 
 
 def test_a_vehicle_that_reboots_in_flight_is_disarmed_and_not_coupled(flight):
+    pids = flight.program.pids()
     rebooted = time.monotonic()
     flight.start_vehicle()
     flight.told("The vehicle has rebooted", rebooted, 15)
@@ -226,6 +232,8 @@ def test_a_vehicle_that_reboots_in_flight_is_disarmed_and_not_coupled(flight):
     )
     assert view.pilot.phase == Phase.DISENGAGED
     flight.stays_uncoupled(2.0)
+    # Everything is read anew, and flown with again by the same processes.
+    assert flight.coupled().program.pids() == pids
 
 
 class Radio:

@@ -43,7 +43,7 @@ class ParameterDesk:
         self._whole: dict[str, bool] = {}
         self._judged: dict[str, Parameter] = {}
         self._again, self._ask = Every(_AGAIN_S), Every(_ASK_S)
-        self._boots = self._total = 0
+        self._boots = self._absences = self._total = 0
 
     @property
     def unsafe(self) -> str:
@@ -68,8 +68,14 @@ class ParameterDesk:
             self._parameters.set(command.number, name, amount, whole=whole)
         return why
 
-    def pass_on(self, now: float, boots: int) -> Iterator[Answer]:
-        """Send what was read, and yield the answers; a vehicle that has started anew is read anew."""
+    def pass_on(self, now: float, boots: int, absences: int) -> Iterator[Answer]:
+        """Send what was read, and yield the answers.
+
+        Args:
+            now: Monotonic s.
+            boots: How often the vehicle has started anew; then all is read anew.
+            absences: How often it was not heard for a while; then those that are judged are asked for again.
+        """
         if boots != self._boots:
             self._boots = boots
             self._parameters.forget()
@@ -81,7 +87,8 @@ class ParameterDesk:
             read = self._parameters.read.get()
             self._whole[read.name] = read.whole
             self._send(read, now)
-        if self._ask.due(now):
+        if self._ask.due(now) or absences != self._absences:
+            self._absences = absences
             self._parameters.ask_again()
         if self._again.due(now):
             # Who has come meanwhile gets to know what they are.
@@ -89,10 +96,6 @@ class ParameterDesk:
                 self._publisher.send(record)
         while not self._parameters.answers.empty():
             yield self._parameters.answers.get()
-
-    def ask_again(self) -> None:
-        """Ask for those that are judged: the vehicle was not heard for a while."""
-        self._parameters.ask_again()
 
     def _hear(self, judged: Judged, value: float, now: float) -> None:
         """Judge anew what the vehicle told, and say so where it is not what it was."""

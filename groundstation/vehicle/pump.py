@@ -80,6 +80,7 @@ class Pump:
         heard_t: When the last frame came of the vehicle, or before that is known of any system that has introduced
             itself by a heartbeat; 0 before.
         refused: How many frames were not heard, for their signature.
+        others: Systems that say they are vehicles and are not the one that is watched.
     """
 
     def __init__(
@@ -105,6 +106,7 @@ class Pump:
         self._thread: threading.Thread | None = None
         self.heard_t = 0.0
         self.refused = 0
+        self.others: frozenset[int] = frozenset()
 
     def start(self, mavsdk: Mavsdk) -> None:
         """Connect MAVSDK and begin."""
@@ -156,13 +158,16 @@ class Pump:
                     continue
                 if self._signing:
                     mavsdk.pass_received_raw_bytes(frame)
-                self._watch(frame, introduces=message.get_type() == "HEARTBEAT")
+                self._watch(frame, message if message.get_type() == "HEARTBEAT" else None)
 
-    def _watch(self, frame: bytes, *, introduces: bool) -> None:
+    def _watch(self, frame: bytes, heartbeat: mavlink.MAVLink_heartbeat_message | None) -> None:
         now = self._clock()
         sequence, system, component = origin(frame)
-        if introduces:
+        if heartbeat is not None:
             self._known.add(system)
+            # A part of a vehicle, and another station, have no autopilot.
+            if self._vehicle not in {0, system} and heartbeat.autopilot != mavlink.MAV_AUTOPILOT_INVALID:
+                self.others |= {system}
         # Noise on a serial line can look like a frame, but hardly like one of a system that is known.
         if system not in self._known:
             return

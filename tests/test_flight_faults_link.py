@@ -88,7 +88,7 @@ def test_a_mode_that_is_denied_is_explained_within_a_second_and_nothing_is_coupl
         "the vehicle denies it",
     )
     assert flight.told("no setpoints are coming", began) - denied < 1.0
-    until(lambda: b"no setpoints" in flight.program.screen, 2, "the screen shows why")
+    until(lambda: b"Offboard denied: no" in flight.program.screen, 2, "the screen shows why")
     assert time.monotonic() - denied < 1.0
     flight.uncoupled()
     flight.mend()

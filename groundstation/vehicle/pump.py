@@ -158,7 +158,9 @@ class Pump:
                     continue
                 if self._signing:
                     mavsdk.pass_received_raw_bytes(frame)
-                self._watch(frame, message if message.get_type() == "HEARTBEAT" else None)
+                self._watch(
+                    frame, message if isinstance(message, mavlink.MAVLink_heartbeat_message) else None
+                )
 
     def _watch(self, frame: bytes, heartbeat: mavlink.MAVLink_heartbeat_message | None) -> None:
         now = self._clock()

@@ -79,6 +79,7 @@ def test_a_mode_that_is_denied_is_explained_within_a_second_and_nothing_is_coupl
     until(lambda: holds(flight.tap), 6, "the vehicle holds")
     # The vehicle hears no setpoint, and denies Offboard for that.
     flight.tap.passes = lambda data: not (data[0] == 0xFD and data[7] == SETPOINT_ID)
+    flight.program.screen.clear()
     began = time.monotonic()
     flight.program.console.command(CommandKind.ENGAGE)
     denied = until(
@@ -87,6 +88,8 @@ def test_a_mode_that_is_denied_is_explained_within_a_second_and_nothing_is_coupl
         "the vehicle denies it",
     )
     assert flight.told("no setpoints are coming", began) - denied < 1.0
+    until(lambda: b"Offboard denied: no" in flight.program.screen, 2, "the screen shows why")
+    assert time.monotonic() - denied < 1.0
     flight.uncoupled()
     flight.mend()
     flight.stays_uncoupled(1.0)
@@ -105,6 +108,59 @@ def test_another_that_takes_over_is_shown_within_1500_ms_and_not_fought(flight):
     time.sleep(0.3)
     flight.stays_uncoupled(1.5)
     assert holds(flight.tap)
+
+
+def asked_speed(flight, since: float) -> float:
+    """Return the largest speed around that left since a moment, m/s."""
+    return max((math.hypot(*asked(data)[:2]) for t, data in flight.tap.setpoints if t > since), default=0.0)
+
+
+def test_a_speed_limit_that_another_station_lowers_in_flight_is_kept_at_once(flight):
+    until(lambda: asked_speed(flight, 0.0) > 0.6, 5, "it is flown fast")
+    lowered = time.monotonic()
+    set_parameters(flight.tap, MPC_XY_VEL_MAX=0.5)
+    try:
+        told = flight.told("MPC_XY_VEL_MAX is 0.5 now, was 12", lowered)
+        flight.uncoupled(1.0)
+        assert told - lowered < 0.5
+        until(lambda: holds(flight.tap), 6, "the vehicle holds")
+        assert last_faster(flight, lowered, 0.5) < 0.5
+        flight.hand.put((0.0, 0.0, 0.0))
+        flight.engage()
+        flight.hand.put((0.03, 0.0, 0.0))
+        flight.tap.setpoints.clear()
+        until(lambda: asked_speed(flight, 0.0) > 0.1, 5, "it is flown again")
+        time.sleep(1.0)
+        assert asked_speed(flight, 0.0) <= 0.5 + 1e-3
+    finally:
+        set_parameters(flight.tap, MPC_XY_VEL_MAX=12.0)
+        flight.told("MPC_XY_VEL_MAX is 12 now, was 0.5", lowered)
+
+
+def last_faster(flight, since: float, speed: float) -> float:
+    """Return how long after a moment the last setpoint left that asks for more than a speed, s."""
+    return max(
+        (t - since for t, data in flight.tap.setpoints if math.hypot(*asked(data)[:2]) > speed + 1e-3),
+        default=0.0,
+    )
+
+
+def test_a_failsafe_that_another_station_disarms_while_the_link_is_down_is_read_when_it_is_back(flight):
+    """What is told while nobody hears it is lost: it is asked for."""
+    cut = flight.cut()
+    flight.uncoupled(3.0)
+    set_parameters(flight.tap, COM_OBL_RC_ACT=7)
+    time.sleep(0.2)
+    try:
+        mended = flight.mend()
+        assert flight.told("COM_OBL_RC_ACT is 7 now, was 0: Disarm", mended) > cut
+        flight.see(lambda view: b"COM_OBL_RC_ACT = 7" in view.status.unsafe, 1.0, "called unsafe")
+        flight.hand.put((0.0, 0.0, 0.0))
+        flight.program.console.command(CommandKind.ENGAGE)
+        flight.told("Engage refused: COM_OBL_RC_ACT = 7", mended)
+    finally:
+        set_parameters(flight.tap, COM_OBL_RC_ACT=0)
+        flight.told("COM_OBL_RC_ACT is 0 now, was 7", cut)
 
 
 @pytest.mark.parametrize("seconds", [0.5, 2.0, 5.0, 30.0])
@@ -128,7 +184,9 @@ def test_a_link_that_is_cut_is_told_takes_the_force_and_does_not_resume_by_itsel
     ("conditions", "stays"),
     [
         ({"DELAY": 0.025, "JITTER": 0.01, "LOSS": 0.01, "REORD": 0.1, "DUP": 0.1}, True),
+        ({"DELAY": 0.025, "JITTER": 0.05, "LOSS": 0.3, "REORD": 0.3, "DUP": 0.3}, False),
         ({"DELAY": 0.15, "JITTER": 0.05, "LOSS": 0.1, "REORD": 0.2, "DUP": 0.2}, True),
+        ({"DELAY": 0.35, "JITTER": 0.1, "LOSS": 0.01, "REORD": 0.1, "DUP": 0.1}, False),
         ({"DELAY": 0.35, "JITTER": 0.1, "LOSS": 0.3, "REORD": 0.3, "DUP": 0.3}, False),
     ],
 )
@@ -165,6 +223,7 @@ def apply(flight, conditions) -> None:
 
 
 def test_a_vehicle_that_reboots_in_flight_is_disarmed_and_not_coupled(flight):
+    pids = flight.program.pids()
     rebooted = time.monotonic()
     flight.start_vehicle()
     flight.told("The vehicle has rebooted", rebooted, 15)
@@ -173,6 +232,8 @@ def test_a_vehicle_that_reboots_in_flight_is_disarmed_and_not_coupled(flight):
     )
     assert view.pilot.phase == Phase.DISENGAGED
     flight.stays_uncoupled(2.0)
+    # Everything is read anew, and flown with again by the same processes.
+    assert flight.coupled().program.pids() == pids
 
 
 class Radio:

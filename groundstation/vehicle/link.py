@@ -18,9 +18,7 @@ from mavsdk import Configuration, Mavsdk, System
 
 from groundstation.bus import Bus
 from groundstation.child import Lifeline, run_child
-from groundstation.conditions import Conditions
 from groundstation.errors import InputError
-from groundstation.failsafe import BY_FAULT, Fault
 from groundstation.frames import Vector4
 from groundstation.messages import (
     ANSWER_TEXT,
@@ -45,6 +43,7 @@ from groundstation.run import Run
 from groundstation.vehicle.asleep import Sleep
 from groundstation.vehicle.commander import STEERING, Answer, Commander
 from groundstation.vehicle.gate import Gate
+from groundstation.vehicle.hearing import Hearing
 from groundstation.vehicle.heap import Trimmer, take_one_arena
 from groundstation.vehicle.identity import Identity
 from groundstation.vehicle.interventions import Interventions
@@ -54,7 +53,7 @@ from groundstation.vehicle.parameter_desk import PARAMETER_COMMANDS, ParameterDe
 from groundstation.vehicle.profiles import profile_of
 from groundstation.vehicle.pump import Pump
 from groundstation.vehicle.round_trip import RoundTrip
-from groundstation.vehicle.signing import Refusals, Signing, read_key
+from groundstation.vehicle.signing import Signing, read_key
 from groundstation.vehicle.telemetry import Notes, VehicleView
 from groundstation.vehicle.tlog import TlogWriter
 from groundstation.vehicle.transport import TransportError, open_transport, parse_url
@@ -68,7 +67,6 @@ _DISCOVERY_S = 0.05
 _DEFAULT_TAKEOFF_M = 2.0
 _REASON_S = 1.5
 _LEAVE_S = 0.2
-_SILENT = BY_FAULT[Fault.LINK_SILENT]
 # Three heartbeats: a vehicle whose heartbeats tell no autopilot that is known has none.
 _INTRODUCTION_S = 3.0
 
@@ -127,8 +125,7 @@ class Link:
         self._denials: deque[tuple[float, str]] = deque(maxlen=4)
         self._next_status = 0.0
         self._next_discovery = 0.0
-        self._silent = False
-        self._refusals = Refusals()
+        self._hearing = Hearing(pump, run.settings.safety)
 
     def turn(self) -> None:
         """Pass records once around; never waits."""
@@ -148,7 +145,7 @@ class Link:
         self._interventions.turn(now)
         self._pass_on_sights()
         if self._desk:
-            for answer in self._desk.pass_on(now, self._view.boots):
+            for answer in self._desk.pass_on(now, self._view.boots, self._hearing.absences):
                 self._tell(answer, now)
         self._pass_on_notes(now)
         if now >= self._next_status or self._changed():
@@ -204,6 +201,7 @@ class Link:
         self._identity = Identity(system, time.monotonic)
         self._interventions.attach(system, self._gate, lambda: time.monotonic() - self._pump.heard_t)
         self._view.attach(system, self._run.settings.rates.telemetry)
+        self._pump.watch(system.get_system_id())
         self._status.system_id, self._status.autopilot = system.get_system_id(), system.autopilot_type()
         kind = profile.label if profile else "unknown autopilot"
         words = f"Vehicle {self._status.system_id}, {kind}, found on {self._run.url}."
@@ -333,17 +331,8 @@ class Link:
             status.component = self._identity.component
             status.firmware = fit(self._identity.firmware, FIRMWARE_TEXT)
         self._statuses.send(status)
-        self._watch_silence(now)
-        if words := self._refusals.news(now, self._pump.refused, heard=bool(self._pump.heard_t)):
-            self._bus.event(Severity.WARNING, words)
-
-    def _watch_silence(self, now: float) -> None:
-        seen = Conditions(silence=now - self._pump.heard_t if self._pump.heard_t else 0.0)
-        silent = _SILENT.holds(seen, self._run.settings.safety)
-        if silent != self._silent:
-            self._silent = silent
-            words = _SILENT.say(seen) if silent else "The vehicle is heard again."
-            self._bus.event(_SILENT.severity if silent else Severity.INFO, words)
+        for severity, words in self._hearing.news(now):
+            self._bus.event(severity, words)
 
 
 def body(run: Run, bus: Bus, lifeline: Lifeline) -> None:

@@ -20,6 +20,7 @@ class Profile(NamedTuple):
         speeds: Names of those that bound the speed: around, up, down.
         unit: That they are in, m/s.
         modes: Custom modes, main and sub, that it is asked for.
+        bytewise: A whole number's bits travel in a parameter's float; else the float has its value.
         tested: It has been flown with this program, if only a simulation of it.
     """
 
@@ -28,6 +29,7 @@ class Profile(NamedTuple):
     speeds: tuple[str, str, str]
     unit: float
     modes: frozenset[tuple[float, float]]
+    bytewise: bool
     tested: bool
 
     @property
@@ -37,9 +39,9 @@ class Profile(NamedTuple):
 
 
 PROFILES: Mapping[Autopilot, Profile] = {
-    Autopilot.PX4: Profile("PX4", px4.JUDGED, px4.SPEEDS, 1.0, px4.MODES, tested=True),
+    Autopilot.PX4: Profile("PX4", px4.JUDGED, px4.SPEEDS, 1.0, px4.MODES, bytewise=True, tested=True),
     Autopilot.ARDUPILOT: Profile(
-        "ArduPilot", ardupilot.JUDGED, ardupilot.SPEEDS, 0.01, ardupilot.MODES, tested=False
+        "ArduPilot", ardupilot.JUDGED, ardupilot.SPEEDS, 0.01, ardupilot.MODES, bytewise=False, tested=False
     ),
 }
 _UNKNOWN = (

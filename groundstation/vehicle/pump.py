@@ -77,8 +77,10 @@ class Pump:
         signing: Signs what leaves and judges what comes; None where nothing is signed and everything heard.
 
     Attributes:
-        heard_t: When the last frame came of a system that has introduced itself by a heartbeat; 0 before.
+        heard_t: When the last frame came of the vehicle, or before that is known of any system that has introduced
+            itself by a heartbeat; 0 before.
         refused: How many frames were not heard, for their signature.
+        others: Systems that say they are vehicles and are not the one that is watched.
     """
 
     def __init__(
@@ -98,11 +100,13 @@ class Pump:
         self._parser.robust_parsing = True
         self._losses = Losses()
         self._known: set[int] = set()
+        self._vehicle = 0
         self._lock = threading.Lock()
         self._running = True
         self._thread: threading.Thread | None = None
         self.heard_t = 0.0
         self.refused = 0
+        self.others: frozenset[int] = frozenset()
 
     def start(self, mavsdk: Mavsdk) -> None:
         """Connect MAVSDK and begin."""
@@ -118,6 +122,10 @@ class Pump:
         if self._thread is not None:
             self._thread.join()
         self._transport.close()
+
+    def watch(self, system: int) -> None:
+        """Watch this system only: another station that is heard on the same link is not the vehicle."""
+        self._vehicle = system
 
     def loss(self) -> float:
         """Return the share of frames lost in the last seconds, 0 to 1."""
@@ -150,18 +158,25 @@ class Pump:
                     continue
                 if self._signing:
                     mavsdk.pass_received_raw_bytes(frame)
-                self._watch(frame, introduces=message.get_type() == "HEARTBEAT")
+                self._watch(
+                    frame, message if isinstance(message, mavlink.MAVLink_heartbeat_message) else None
+                )
 
-    def _watch(self, frame: bytes, *, introduces: bool) -> None:
+    def _watch(self, frame: bytes, heartbeat: mavlink.MAVLink_heartbeat_message | None) -> None:
         now = self._clock()
         sequence, system, component = origin(frame)
-        if introduces:
+        if heartbeat is not None:
             self._known.add(system)
+            # A part of a vehicle, and another station, have no autopilot.
+            if self._vehicle not in {0, system} and heartbeat.autopilot != mavlink.MAV_AUTOPILOT_INVALID:
+                self.others |= {system}
         # Noise on a serial line can look like a frame, but hardly like one of a system that is known.
         if system not in self._known:
+            return
+        if self._tlog:
+            self._tlog.write(frame)
+        if system != (self._vehicle or system):
             return
         self.heard_t = now
         with self._lock:
             self._losses.count(now, system, component, sequence)
-        if self._tlog:
-            self._tlog.write(frame)

@@ -55,6 +55,7 @@ from groundstation.vehicle.parameter_desk import PARAMETER_COMMANDS, ParameterDe
 from groundstation.vehicle.profiles import profile_of
 from groundstation.vehicle.pump import Pump
 from groundstation.vehicle.round_trip import RoundTrip
+from groundstation.vehicle.signed_times import TimesKeeper, read_times
 from groundstation.vehicle.signing import Refusals, Signing, read_key
 from groundstation.vehicle.telemetry import Notes, VehicleView
 from groundstation.vehicle.tlog import TlogWriter
@@ -359,7 +360,7 @@ def body(run: Run, bus: Bus, lifeline: Lifeline) -> None:
         lambda level, text, _file, _line: _note_log(notes, int(level), text) if connected.is_set() else True
     )
     try:
-        signing = Signing(read_key(Path(run.signing_key)), time.time) if run.signing_key else None
+        signing, times = _open_signing(run, notes)
         transport = open_transport(parse_url(run.url), lambda severity, words: notes.put((severity, words)))
     except (InputError, TransportError) as error:
         raise SystemExit(str(error)) from error
@@ -387,6 +388,8 @@ def body(run: Run, bus: Bus, lifeline: Lifeline) -> None:
             mav.destroy()
         if tlog:
             tlog.close()
+        if times:
+            times.close()
         mavsdk.log_unsubscribe()
 
 
@@ -397,6 +400,17 @@ def _take_one_arena() -> None:
     """
     with contextlib.suppress(AttributeError, OSError):
         ctypes.CDLL(None).mallopt(_M_ARENA_MAX, 1)
+
+
+def _open_signing(run: Run, notes: Notes) -> tuple[Signing | None, TimesKeeper | None]:
+    if not run.signing_key:
+        return None, None
+    path = Path(run.signing_key)
+    before, why = read_times(path)
+    if why:
+        notes.put((Severity.WARNING, why))
+    signing = Signing(read_key(path), time.time, before)
+    return signing, TimesKeeper(path, signing, lambda words: notes.put((Severity.WARNING, words)))
 
 
 def _open_tlog(run: Run, notes: Notes) -> TlogWriter | None:

@@ -20,6 +20,7 @@ BENCHES = {
     "vehicle": "start, memory and share of a core of the simulated vehicle",
     "fuzz": "a million hostile datagrams at the vehicle",
     "fuzz_station": "a million hostile inputs at pilot and gate",
+    "fuzz_link": "a million hostile datagrams from the vehicle at the link",
     "falcon": "the Falcon's driver: exactness, spoilt bytes, cost of a tick",
     "servo": "pace of the servo on an emulated device, against a bare C loop",
     "passivity": "energy at the haptic port with delay and loss",

@@ -73,13 +73,17 @@ class Hostile:
     Args:
         rng: Where chance comes from.
         keys: Also set keys to sign with; somebody has to take them back, or all the rest is not heard.
-        system_id: Of the vehicle.
+        system_id: Of whom they are for.
+        source: System and component that they are from.
     """
 
-    def __init__(self, rng: random.Random, *, keys: bool, system_id: int = 1) -> None:
+    def __init__(
+        self, rng: random.Random, *, keys: bool, system_id: int = 1, source: tuple[int, int] = (245, 190)
+    ) -> None:
         self._rng = rng
         self._system_id = system_id
-        self._packer = m.MAVLink(None, srcSystem=245, srcComponent=190)
+        self._source = source
+        self._packer = m.MAVLink(None, srcSystem=source[0], srcComponent=source[1])
         left_out = () if keys else (m.MAVLINK_MSG_ID_SETUP_SIGNING,)
         self._kinds = [m.mavlink_map[key] for key in sorted(m.mavlink_map) if key not in left_out]
         self._likely = [kind for kind in self._kinds if "target_system" in kind.fieldnames]
@@ -185,9 +189,9 @@ class Hostile:
         kind = self._rng.choice(self._kinds)
         payload = self._rng.randbytes(self._rng.randrange(256))
         flags = self._rng.choice((0, 0, 1))
-        head = bytes((0xFD, len(payload), flags, 0, self._rng.randrange(256), 245, 190)) + kind.id.to_bytes(
-            3, "little"
-        )
+        head = bytes(
+            (0xFD, len(payload), flags, 0, self._rng.randrange(256), *self._source)
+        ) + kind.id.to_bytes(3, "little")
         crc = m.x25crc(head[1:] + payload + bytes((kind.crc_extra,))).crc
         return head + payload + crc.to_bytes(2, "little") + (self._rng.randbytes(13) if flags else b"")
 
@@ -285,6 +289,10 @@ class Range:
         return number
 
     def step(self) -> list[m.MAVLink_message]:
+        """Advance; return the messages of the vehicle on its first link."""
+        return [message for data in self.spoken() for message in self._inbox.messages(data, whole=True)]
+
+    def spoken(self) -> list[bytes]:
         """Advance; return what the vehicle says on its first link."""
         self.sim.step(DT)
         self.endpoint.step()
@@ -297,7 +305,7 @@ class Range:
         if self.endpoint.reboot_asked or self.sim.autopilot.terminated:
             self.reboots += 1
             self._start()
-        return [message for data in said for message in self._inbox.messages(data, whole=True)]
+        return said
 
     def check(self) -> None:
         """Look whether the vehicle's state is sound.

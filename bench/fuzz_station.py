@@ -428,34 +428,46 @@ def _frames(number: int, rng: random.Random) -> Iterator[bytes]:
 
 
 def _sound(frame: bytes, *, killing: bool) -> bool:
-    """Look at a frame that left; return whether it kills.
+    """Look at a frame that left; see `sound`."""
+    parser = m.MAVLink(None)
+    parser.robust_parsing = True
+    return any(sound(message, killing=killing) for message in parser.parse_buffer(frame) or ())
+
+
+def sound(message: m.MAVLink_message, *, killing: bool, setting: frozenset[str] = frozenset()) -> bool:
+    """Look at a message that left; return whether it kills.
+
+    Args:
+        message: As pymavlink reads it.
+        killing: A kill has been confirmed a moment ago.
+        setting: Parameters that may be set.
 
     Raises:
         BrokenError: It must not have left.
     """
-    parser = m.MAVLink(None)
-    parser.robust_parsing = True
-    for message in parser.parse_buffer(frame) or ():
-        kind = message.get_type()
-        if kind == "SET_POSITION_TARGET_LOCAL_NED":
-            numbers = (message.vx, message.vy, message.vz, message.yaw_rate)
-            if message.target_system != 1 or not all(abs(each) <= 3.0001 for each in numbers):
-                raise BrokenError(f"{message}")
-        if kind == "COMMAND_LONG":
-            if message.command not in {21, 22, 176, 400, 511, 512, 520}:
-                raise BrokenError(f"{message}")
-            forced = message.command == 400 and message.param2 == _FORCE
-            if forced and not (killing and message.param1 == 0.0 and message.target_system == 1):
-                raise BrokenError(f"a kill that was not meant: {message}")
-            return forced
-        if kind not in _LISTED:
+    kind = message.get_type()
+    if kind == "SET_POSITION_TARGET_LOCAL_NED":
+        numbers = (message.vx, message.vy, message.vz, message.yaw_rate)
+        if message.target_system != 1 or not all(abs(each) <= 3.0001 for each in numbers):
             raise BrokenError(f"{message}")
+    elif kind == "COMMAND_LONG":
+        if message.command not in {21, 22, 176, 400, 511, 512, 520}:
+            raise BrokenError(f"{message}")
+        forced = message.command == 400 and message.param2 == _FORCE
+        if forced and not (killing and message.param1 == 0.0 and message.target_system == 1):
+            raise BrokenError(f"a kill that was not meant: {message}")
+        return forced
+    elif kind == "PARAM_SET":
+        if message.param_id not in setting:
+            raise BrokenError(f"{message}")
+    elif kind not in _LISTED:
+        raise BrokenError(f"{message}")
     return False
 
 
 _LISTED = {
     "HEARTBEAT", "PING", "TIMESYNC", "PARAM_REQUEST_READ", "PARAM_REQUEST_LIST", "COMMAND_ACK", "AUTOPILOT_VERSION",
-    "SET_POSITION_TARGET_LOCAL_NED", "BAD_DATA",
+    "BAD_DATA",
 }  # fmt: skip
 
 

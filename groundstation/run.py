@@ -9,7 +9,7 @@ import msgspec
 from msgspec import Struct
 
 from groundstation.config import Settings
-from groundstation.run_folder import run_folder
+from groundstation.run_folder import own_folder, run_folder
 from groundstation.training.measures import Measures, Track
 from groundstation.training.mission import Mission
 
@@ -87,8 +87,7 @@ class Run(Struct, frozen=True):
 
 def write_run(run: Run) -> Path:
     """Write the run file where its processes find it and return its path."""
-    path = run_file(run.run_id)
-    path.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
+    path = own_folder(run.run_id) / RUN_FILE
     new = path.with_suffix(".new")
     new.write_bytes(msgspec.json.encode(run))
     # In one step: a process that reads it meanwhile finds the one or the other.

@@ -11,6 +11,7 @@ import os
 import re
 import secrets
 import shutil
+import stat
 import tempfile
 import time
 from collections.abc import Iterator
@@ -35,6 +36,19 @@ def run_folder(run_id: str) -> Path:
     return Path(tempfile.gettempdir()) / f"{PREFIX}{run_id}"
 
 
+def own_folder(run_id: str) -> Path:
+    """Return a run's folder, which is made if it is not there; nobody else may look into it.
+
+    Raises:
+        PermissionError: There is one that is another user's.
+    """
+    folder = run_folder(run_id)
+    folder.mkdir(mode=0o700, parents=True, exist_ok=True)
+    if not _is_ours(folder):
+        raise PermissionError(f"{folder} is another user's")
+    return folder
+
+
 class Stay:
     """A process's stay in a run, from `Stay(run_id)` to its end.
 
@@ -43,9 +57,7 @@ class Stay:
     """
 
     def __init__(self, run_id: str) -> None:
-        folder = run_folder(run_id)
-        folder.mkdir(mode=0o700, parents=True, exist_ok=True)
-        self._file: IO[bytes] = (folder / _LOCK).open("ab")
+        self._file: IO[bytes] = (own_folder(run_id) / _LOCK).open("ab")
         fcntl.flock(self._file, fcntl.LOCK_SH)
 
     def end(self) -> bool:
@@ -65,7 +77,8 @@ def sweep(run_id: str) -> None:
 def sweep_dead_runs() -> None:
     """Remove what runs left behind whose every process has died, as after SIGKILL of all of them.
 
-    Other folders that begin alike are somebody's, such as a comparison that is being looked at.
+    Other folders that begin alike are somebody's, such as a comparison that is being looked at. So are other users':
+    whoever likes makes a folder or a link of such a name where all keep their temporary files.
     """
     for run_id, folder in _folders():
         if _is_dead(folder):
@@ -80,8 +93,17 @@ def living_runs() -> list[str]:
 def _folders() -> Iterator[tuple[str, Path]]:
     for folder in Path(tempfile.gettempdir()).glob(f"{PREFIX}*-*"):
         run_id = folder.name.removeprefix(PREFIX)
-        if _RUN_ID.fullmatch(run_id):
+        if _RUN_ID.fullmatch(run_id) and _is_ours(folder):
             yield run_id, folder
+
+
+def _is_ours(folder: Path) -> bool:
+    """Say whether a folder is this user's own, and no link to one."""
+    try:
+        about = folder.lstat()
+    except OSError:
+        return False
+    return stat.S_ISDIR(about.st_mode) and about.st_uid == os.geteuid()
 
 
 def _is_dead(folder: Path) -> bool:

@@ -89,6 +89,43 @@ def test_a_file_of_that_name_is_none_of_ours(tmp_path):
     assert stray.read_text() == "keep"
 
 
+class TestAnotherUser:
+    """Who makes folders that are named like ours where all keep their temporary files."""
+
+    @pytest.fixture
+    def theirs(self, monkeypatch):
+        folder = run_folder(new_run_id())
+        folder.mkdir()
+        ours = os.geteuid()
+        monkeypatch.setattr(module.os, "geteuid", lambda: ours + 1)
+        return folder
+
+    def test_a_pipe_for_a_lock_holds_nobody_up_and_no_folder_of_theirs_is_touched(self, theirs):
+        os.mkfifo(theirs / "alive")
+        (theirs / "precious").touch()
+        os.utime(theirs, (0, 0))
+        sweep_dead_runs()
+        assert module.living_runs() == []
+        assert (theirs / "precious").exists()
+
+    def test_a_run_is_not_begun_in_their_folder(self, theirs):
+        with pytest.raises(PermissionError, match="another user's"):
+            Stay(theirs.name.removeprefix("groundstation-"))
+        assert list(theirs.iterdir()) == []
+
+    def test_what_a_link_leads_to_is_left_alone(self, tmp_path):
+        home = tmp_path / "home"
+        home.mkdir()
+        os.utime(home, (0, 0))
+        link = run_folder(new_run_id())
+        link.symlink_to(home)
+        sweep_dead_runs()
+        assert home.is_dir()
+        assert link.is_symlink()
+        with pytest.raises(PermissionError):
+            Stay(link.name.removeprefix("groundstation-"))
+
+
 def test_giving_back_a_terminal_leaves_the_alternate_screen_and_shows_the_cursor():
     import pty
 

@@ -13,8 +13,11 @@ from hypothesis import strategies as st
 from pymavlink import mavutil
 from pymavlink.dialects.v20 import common as mavlink
 
-from groundstation.vehicle.pump import Losses
+from groundstation.vehicle.gate import Gate
+from groundstation.vehicle.pump import Losses, Pump
+from groundstation.vehicle.signing import Signing
 from groundstation.vehicle.tlog import TlogWriter
+from groundstation.vehicle.transport import Url, open_transport
 
 
 def count(sequence):
@@ -154,10 +157,6 @@ def test_frames_that_a_slow_disk_does_not_take_are_told_once(tmp_path, monkeypat
 def test_mavsdk_is_heard_through_the_pump():
     from mavsdk import Configuration, Mavsdk
 
-    from groundstation.vehicle.gate import Gate
-    from groundstation.vehicle.pump import Pump
-    from groundstation.vehicle.transport import Url, open_transport
-
     vehicle = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
     vehicle.bind(("127.0.0.1", 0))
     vehicle.settimeout(10)
@@ -265,3 +264,104 @@ def test_another_vehicle_is_told_once_and_the_silence_of_ours_with_its_end():
     pump.heard_t = 2.1
     assert list(hearing.news(2.2)) == [(Severity.INFO, "The vehicle is heard again.")]
     assert hearing.absences == 1
+
+
+KEY = bytes(range(32))
+
+
+class Ears:
+    """Stands where MAVSDK does, and keeps what it is passed."""
+
+    def __init__(self):
+        self.heard = []
+        self.send = None
+
+    def subscribe_raw_bytes_to_be_sent(self, send):
+        self.send = send
+
+    def add_any_connection(self, _url):
+        pass
+
+    def pass_received_raw_bytes(self, data):
+        self.heard.append(mavlink.MAVLink(None).parse_buffer(bytearray(data))[0])
+
+
+class Signed:
+    """A pump with a key, a log and a real socket, and the vehicle at its other end."""
+
+    def __init__(self, folder):
+        self.vehicle = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        self.vehicle.bind(("127.0.0.1", 0))
+        self.vehicle.settimeout(10)
+        self.path = folder / "flight.tlog"
+        self.log = TlogWriter(self.path, pytest.fail)
+        self.ears = Ears()
+        self.pump = Pump(
+            open_transport(Url("udpout", "127.0.0.1", self.vehicle.getsockname()[1])),
+            Gate(0.15, time.monotonic),
+            self.log,
+            time.monotonic,
+            Signing(KEY, time.time),
+        )
+        self.pump.start(self.ears)
+        self.signer = mavlink.MAVLink(None, srcSystem=1, srcComponent=1)
+        self.signer.signing.secret_key, self.signer.signing.sign_outgoing = KEY, True
+        self.signer.signing.timestamp = round((time.time() - 1_420_070_400) * 1e5)
+        self.plain = mavlink.MAVLink(None, srcSystem=1, srcComponent=1)
+        station = mavlink.MAVLink(None, srcSystem=255, srcComponent=190)
+        self.ears.send(bytes(station.heartbeat_encode(6, 8, 0, 0, 4).pack(station)))
+        self.said, self.peer = self.vehicle.recvfrom(1000)
+
+    def say(self, message, signer):
+        self.vehicle.sendto(bytes(message.pack(signer)), self.peer)
+
+    def say_heartbeat(self):
+        before = len(self.ears.heard)
+        self.say(self.plain.heartbeat_encode(2, 12, 209, 0, 4), self.signer)
+        deadline = time.monotonic() + 10
+        while len(self.ears.heard) == before and time.monotonic() < deadline:
+            time.sleep(0.002)
+        assert self.ears.heard[-1].get_type() == "HEARTBEAT"
+
+    def logged(self):
+        self.pump.stop()
+        self.log.close()
+        self.vehicle.close()
+        log = mavutil.mavlink_connection(str(self.path))
+        messages = []
+        while (message := log.recv_match()) is not None:
+            messages.append(message)
+        log.close()
+        return messages
+
+
+def test_what_radios_tell_makes_no_silent_vehicle_alive(tmp_path):
+    signed = Signed(tmp_path)
+    signed.say_heartbeat()
+    heard_t = signed.pump.heard_t
+    # As if the vehicle itself had said so; nobody needs a key for it.
+    radio = signed.plain.radio_status_encode(200, 190, 90, 50, 50, 0, 0)
+    for _ in range(20):
+        signed.say(radio, signed.plain)
+    signed.say(signed.plain.sys_status_encode(*[0] * 13), signed.plain)
+    deadline = time.monotonic() + 10
+    while not signed.pump.refused and time.monotonic() < deadline:
+        time.sleep(0.002)
+    assert signed.pump.refused == 1
+    assert signed.pump.heard_t == heard_t
+    assert signed.pump.loss() == 0.0
+    signed.logged()
+    assert {message.get_type() for message in signed.ears.heard} == {"HEARTBEAT"}
+
+
+def test_no_signature_and_no_key_is_in_the_log(tmp_path):
+    signed = Signed(tmp_path)
+    assert signed.said[2] == mavlink.MAVLINK_IFLAG_SIGNED
+    signed.say_heartbeat()
+    signed.say(signed.plain.setup_signing_encode(255, 190, b"secret" * 5 + b"..", 1), signed.signer)
+    signed.say_heartbeat()
+    messages = signed.logged()
+    assert b"secret" not in signed.path.read_bytes()
+    assert [message.get_type() for message in messages] == ["HEARTBEAT"] * 3
+    assert [message.get_srcSystem() for message in messages] == [255, 1, 1]
+    assert {message.get_header().incompat_flags for message in messages} == {0}

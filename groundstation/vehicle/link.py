@@ -43,8 +43,8 @@ from groundstation.run import Run
 from groundstation.vehicle.asleep import Sleep
 from groundstation.vehicle.commander import STEERING, Answer, Commander
 from groundstation.vehicle.gate import Gate
-from groundstation.vehicle.hearing import Hearing
 from groundstation.vehicle.heap import Trimmer, take_one_arena
+from groundstation.vehicle.hearing import Hearing
 from groundstation.vehicle.identity import Identity
 from groundstation.vehicle.interventions import Interventions
 from groundstation.vehicle.obstacle_view import ObstacleView
@@ -53,6 +53,7 @@ from groundstation.vehicle.parameter_desk import PARAMETER_COMMANDS, ParameterDe
 from groundstation.vehicle.profiles import profile_of
 from groundstation.vehicle.pump import Pump
 from groundstation.vehicle.round_trip import RoundTrip
+from groundstation.vehicle.signed_times import TimesKeeper, read_times
 from groundstation.vehicle.signing import Signing, read_key
 from groundstation.vehicle.telemetry import Notes, VehicleView
 from groundstation.vehicle.tlog import TlogWriter
@@ -347,7 +348,7 @@ def body(run: Run, bus: Bus, lifeline: Lifeline) -> None:
         lambda level, text, _file, _line: _note_log(notes, int(level), text) if connected.is_set() else True
     )
     try:
-        signing = Signing(read_key(Path(run.signing_key)), time.time) if run.signing_key else None
+        signing, times = _open_signing(run, notes)
         transport = open_transport(parse_url(run.url), lambda severity, words: notes.put((severity, words)))
     except (InputError, TransportError) as error:
         raise SystemExit(str(error)) from error
@@ -376,7 +377,20 @@ def body(run: Run, bus: Bus, lifeline: Lifeline) -> None:
             mav.destroy()
         if tlog:
             tlog.close()
+        if times:
+            times.close()
         mavsdk.log_unsubscribe()
+
+
+def _open_signing(run: Run, notes: Notes) -> tuple[Signing | None, TimesKeeper | None]:
+    if not run.signing_key:
+        return None, None
+    path = Path(run.signing_key)
+    before, why = read_times(path)
+    if why:
+        notes.put((Severity.WARNING, why))
+    signing = Signing(read_key(path), time.time, before)
+    return signing, TimesKeeper(path, signing, lambda words: notes.put((Severity.WARNING, words)))
 
 
 def _open_tlog(run: Run, notes: Notes) -> TlogWriter | None:

@@ -12,9 +12,11 @@ from hashlib import sha256
 from hmac import compare_digest
 from pathlib import Path
 
+from msgspec import Struct
+
 from groundstation.clock import Every
 from groundstation.errors import InputError
-from groundstation.vehicle.gate import message_number, origin
+from groundstation.vehicle.gate import origin
 from sim.process.signing_key import KeyFileError
 from sim.process.signing_key import read_key as read_key_file
 
@@ -32,8 +34,9 @@ _LATE_TICKS = 60 * _TICKS_PER_S
 _LATEST = 1 << 47
 _STREAMS = 16
 _TELL_S = 10.0
-# A telemetry radio tells its own state and has no key; nothing here is steered by it.
-_UNSIGNED = frozenset({109})
+# RADIO_STATUS, which a telemetry radio tells of itself: it has no key. Not heard, for whoever sends one in the
+# vehicle's name would make a silent vehicle seem alive; but no reason for a warning.
+NEVER_SIGNED = frozenset({109})
 
 
 def read_key(path: Path) -> bytes:
@@ -48,20 +51,46 @@ def read_key(path: Path) -> bytes:
         raise InputError(f"--signing-key: {error}") from error
 
 
+class Times(Struct, frozen=True):
+    """The timestamps that were used under a key: what is not later than they are has been said before.
+
+    Attributes:
+        newest: Of all that was sent and heard.
+        streams: The newest that was heard of each: link id, system, component, timestamp.
+    """
+
+    newest: int = 0
+    streams: tuple[tuple[int, int, int, int], ...] = ()
+
+
+NO_TIMES = Times()
+
+
 class Signing:
     """Signs and checks under one key. Called from MAVSDK's thread and from the pump's.
 
     Args:
         key: 32 bytes.
         unix_time: Wall-clock time, s since 1970. However it jumps, timestamps only rise.
+        times: Those that were used before.
     """
 
-    def __init__(self, key: bytes, unix_time: Callable[[], float]) -> None:
+    def __init__(self, key: bytes, unix_time: Callable[[], float], times: Times = NO_TIMES) -> None:
         self._key = key
         self._unix_time = unix_time
-        self._newest = 0
-        self._streams: dict[tuple[int, int, int], int] = {}
+        self._newest = times.newest
+        # Of older ones nothing is heard in any case.
+        self._streams = {
+            (link, system, component): t
+            for link, system, component, t in times.streams
+            if t > times.newest - _LATE_TICKS
+        }
         self._lock = threading.Lock()
+
+    def times(self) -> Times:
+        """Return the timestamps used until now."""
+        with self._lock:
+            return Times(self._newest, tuple((*stream, t) for stream, t in self._streams.items()))
 
     def sign(self, frame: bytes) -> bytes:
         """Return an unsigned frame signed, or nothing where it cannot be, which is MAVLink 1."""
@@ -71,23 +100,11 @@ class Signing:
             self._newest = max(self._newest + 1, self._now())
             timestamp = self._newest
         end = _HEADER + frame[1]
-        crc = int.from_bytes(frame[end : end + _CRC], "little") ^ _crc_of_flag(frame[1])
-        signed = b"".join(
-            (
-                frame[:2],
-                bytes((frame[2] | _SIGNED,)),
-                frame[3:end],
-                crc.to_bytes(_CRC, "little"),
-                bytes((_LINK_ID,)),
-                timestamp.to_bytes(6, "little"),
-            )
-        )
+        signed = _turned(frame[: end + _CRC]) + bytes((_LINK_ID,)) + timestamp.to_bytes(6, "little")
         return signed + self._hash(signed)
 
     def trusts(self, frame: bytes) -> bool:
-        """Say whether a frame is to be heard: well signed and new, or of those that are never signed."""
-        if message_number(frame) in _UNSIGNED:
-            return True
+        """Say whether a frame is to be heard: well signed and new."""
         if frame[0] != _V2 or not frame[2] & _SIGNED or len(frame) != _HEADER + frame[1] + _CRC + _BLOCK:
             return False
         timestamp = int.from_bytes(frame[-_BLOCK + 1 : -_HASH], "little")
@@ -143,6 +160,19 @@ class Refusals:
             if heard
             else f"{words}, and no other has come; see that the vehicle has the same key."
         )
+
+
+def without_signature(frame: bytes) -> bytes:
+    """Return a frame as it was before it was signed, for logs: many signatures help to guess the key."""
+    if frame[0] != _V2 or not frame[2] & _SIGNED:
+        return frame
+    return _turned(frame[:-_BLOCK])
+
+
+def _turned(frame: bytes) -> bytes:
+    """Return a frame without its signature, with the signed flag turned over and the CRC of that."""
+    crc = int.from_bytes(frame[-_CRC:], "little") ^ _crc_of_flag(frame[1])
+    return frame[:2] + bytes((frame[2] ^ _SIGNED,)) + frame[3:-_CRC] + crc.to_bytes(_CRC, "little")
 
 
 @functools.cache

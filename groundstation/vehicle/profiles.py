@@ -20,6 +20,7 @@ class Profile(NamedTuple):
         speeds: Names of those that bound the speed: around, up, down.
         unit: That they are in, m/s.
         modes: Custom modes, main and sub, that it is asked for.
+        since: The oldest firmware, major and minor, whose parameters and modes are those that are known here.
         tested: It has been flown with this program, if only a simulation of it.
     """
 
@@ -28,6 +29,7 @@ class Profile(NamedTuple):
     speeds: tuple[str, str, str]
     unit: float
     modes: frozenset[tuple[float, float]]
+    since: tuple[int, int]
     tested: bool
 
     @property
@@ -37,9 +39,9 @@ class Profile(NamedTuple):
 
 
 PROFILES: Mapping[Autopilot, Profile] = {
-    Autopilot.PX4: Profile("PX4", px4.JUDGED, px4.SPEEDS, 1.0, px4.MODES, tested=True),
+    Autopilot.PX4: Profile("PX4", px4.JUDGED, px4.SPEEDS, 1.0, px4.MODES, px4.SINCE, tested=True),
     Autopilot.ARDUPILOT: Profile(
-        "ArduPilot", ardupilot.JUDGED, ardupilot.SPEEDS, 0.01, ardupilot.MODES, tested=False
+        "ArduPilot", ardupilot.JUDGED, ardupilot.SPEEDS, 0.01, ardupilot.MODES, ardupilot.SINCE, tested=False
     ),
 }
 _UNKNOWN = (
@@ -50,6 +52,12 @@ _UNKNOWN = (
 def profile_of(autopilot: int) -> Profile | None:
     """Return an autopilot's profile, or None where nothing is known of it."""
     return next((profile for kind, profile in PROFILES.items() if kind == autopilot), None)
+
+
+def outdated(profile: Profile, firmware: str) -> bool:
+    """Say whether a firmware, as in 1.15.2 or 1.16.0 (beta), is older than what is known; unknown is not old."""
+    numbers = [part for part in firmware.partition(" ")[0].split(".")[:2] if part.isdecimal()]
+    return len(numbers) == 2 and (int(numbers[0]), int(numbers[1])) < profile.since
 
 
 def unsafe_for(profile: Profile | None, values: Mapping[str, float]) -> str:

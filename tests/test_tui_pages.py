@@ -18,6 +18,7 @@ from groundstation.config import Buttons
 from groundstation.messages import Autopilot, CommandKind, Event, FlightMode, Health, Parameter, Phase
 from groundstation.tui.acts import URGENT
 from groundstation.tui.app import FlightApp
+from groundstation.tui.checks_computer import judged
 from groundstation.tui.lines import Lines
 from groundstation.tui.pages import PAGES
 from groundstation.tui.screens.dialog import Confirm, Typed
@@ -58,6 +59,12 @@ def lines(scene: Cockpit) -> str:
     """Return what the list of the page shows."""
     shown = scene.app.screen.query_one(Lines)
     return "\n".join(shown.render_line(y).text.rstrip() for y in range(shown.size.height))
+
+
+@pytest.fixture(autouse=True)
+def _mains(monkeypatch):
+    """Whatever the battery of the computer that tests: it is not what is judged here."""
+    monkeypatch.setattr("groundstation.tui.checks_computer.supply", lambda _: judged(math.nan))
 
 
 def read(scene: Cockpit, **changes: float) -> None:

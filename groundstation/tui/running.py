@@ -36,6 +36,7 @@ def run_screen(
     keeper: Keeper | None = None,
     on_workload: Callable[[Workload], None] = lambda _: None,
     instructing: Instructing | None = None,
+    tell: Callable[[str], None] = lambda _: None,
 ) -> Ending:
     """Show the screen until the operator leaves; return how that was."""
     app = FlightApp(
@@ -48,6 +49,7 @@ def run_screen(
         keeper=keeper,
         instructing=instructing,
         on_workload=on_workload,
+        tell=tell,
     )
     # A collection that looks through all the modules again takes 0.2 s, and a stick is stale after 0.1 s.
     gc.collect()
@@ -72,9 +74,12 @@ def fly_on_screen(run: Run, bus: Bus, supervisor: Supervisor) -> Ending:
     follower = MissionFollower(run.mission, bus, run.par) if run.mission else None
     keeper = Keeper(run, follower.attempts) if follower else None
 
+    def tell(words: str) -> None:
+        bus.event(Severity.INFO, words)
+
     def on_workload(workload: Workload) -> None:
         # As an event it stands in the recording.
-        bus.event(Severity.INFO, workload.words)
+        tell(workload.words)
         if keeper:
             keeper.keep_workload(workload)
 
@@ -85,10 +90,11 @@ def fly_on_screen(run: Run, bus: Bus, supervisor: Supervisor) -> Ending:
             supervisor,
             stick,
             follower=follower,
-            coach=LiveCoach(run, lambda words: bus.event(Severity.INFO, words)),
+            coach=LiveCoach(run, tell),
             keeper=keeper,
             on_workload=on_workload,
             instructing=Instructing(Asker(bus, "instructor") if run.simulated else None),
+            tell=tell,
         )
     finally:
         for words in keeper.close() if keeper else ():

@@ -15,6 +15,7 @@ from typing import NoReturn, cast
 
 from groundstation import __version__, fly_options
 from groundstation import excite_options as excite
+from groundstation import preflight_options as preflight
 from groundstation import school_options as school
 from groundstation.devices import options as devices
 from groundstation.errors import InputError
@@ -35,6 +36,7 @@ EXIT_BAD_INPUT = 2
 # options to a parser, and RUN, the function that does it, as "module:function".
 _COMMANDS: dict[str, ModuleType] = {
     "school": school,
+    "preflight": preflight,
     "review": review,
     "report": report,
     "replay": replay,
@@ -57,6 +59,7 @@ examples:
   groundstation --sim --headless --mission paper --json      let the scripted hand fly it
   groundstation --connect udpin://0.0.0.0:14540              fly a real PX4 vehicle
   groundstation --connect serial:///dev/ttyUSB0:57600        the same through a radio
+  groundstation preflight --connect udpin://0.0.0.0:14540    every check before a flight, with an exit code
   groundstation review                                       look at the last flight
   groundstation report                                       a page on the last flight, to mail
   groundstation replay                                       the last flight's hand through today's pilot

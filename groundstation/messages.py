@@ -142,7 +142,7 @@ class Severity(IntEnum):
 
 
 class Health(IntFlag):
-    """What the vehicle's estimator and sensors say of themselves."""
+    """What the vehicle's estimator, sensors and receiver say of themselves."""
 
     GYRO = 1
     ACCELEROMETER = 2
@@ -151,6 +151,7 @@ class Health(IntFlag):
     GLOBAL_POSITION = 16
     HOME = 32
     ARMABLE = 64
+    TRANSMITTER = 128
 
 
 class Handle(Record):

@@ -32,6 +32,7 @@ from groundstation.tui.acts import ACTS, URGENT, Act, coupled, in_air
 from groundstation.tui.alarms import Alarms
 from groundstation.tui.alerts import conditions
 from groundstation.tui.checks import red
+from groundstation.tui.checks_kept import ArmedChecks
 from groundstation.tui.choices import CHOICES, PRESETS_EXPLAINED, Choice
 from groundstation.tui.everywhere import KEYS
 from groundstation.tui.frame import Frame, Reader, Supervisor, workspace
@@ -93,6 +94,7 @@ class FlightApp(Schooling):
         keeper: Keeps the flights that land, if they are anybody's.
         instructing: Lets wind and failures happen for a class of one.
         on_workload: Keeps what was answered after a flight.
+        tell: Makes words an event, for the recording.
         clock: Monotonic seconds, the bus's clock.
     """
 
@@ -114,6 +116,7 @@ class FlightApp(Schooling):
         keeper: Keeper | None = None,
         instructing: Instructing | None = None,
         on_workload: Callable[[Workload], None] = lambda _: None,
+        tell: Callable[[str], None] = lambda _: None,
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
         super().__init__(
@@ -140,6 +143,7 @@ class FlightApp(Schooling):
         self._instructing = instructing or Instructing(None)
         self._flight = FlightScreen(self.hand if stick is not None else None)
         self._milestones, self._viewer = Milestones(), Viewer()
+        self._armed_checks = ArmedChecks(tell)
         self._latest: Frame | None = None
 
     def get_driver_class(self) -> type[Driver]:
@@ -201,6 +205,7 @@ class FlightApp(Schooling):
 
     def _look_around(self, frame: Frame) -> None:
         """Show the page that is due, but never in place of what the operator looks at."""
+        self._armed_checks.look(frame)
         if failure := self._viewer.failure():
             self.notify(f"The viewer: {failure}", severity="warning", timeout=8.0, markup=False)
         if self.screen is self._flight and (due := self._milestones.page(frame.snapshot, red(frame))):

@@ -34,6 +34,7 @@ def run_screen(
     keeper: Keeper | None = None,
     on_workload: Callable[[Workload], None] = lambda _: None,
     instructing: Instructing | None = None,
+    tell: Callable[[str], None] = lambda _: None,
 ) -> Ending:
     """Show the screen until the operator leaves; return how that was."""
     app = FlightApp(
@@ -46,6 +47,7 @@ def run_screen(
         keeper=keeper,
         instructing=instructing,
         on_workload=on_workload,
+        tell=tell,
     )
     watch = HangupWatch(sys.stdin.fileno())
     try:
@@ -64,9 +66,12 @@ def fly_on_screen(run: Run, bus: Bus, supervisor: Supervisor) -> Ending:
     follower = MissionFollower(run.mission, bus, run.par) if run.mission else None
     keeper = Keeper(run, follower.attempts) if follower else None
 
+    def tell(words: str) -> None:
+        bus.event(Severity.INFO, words)
+
     def on_workload(workload: Workload) -> None:
         # As an event it stands in the recording.
-        bus.event(Severity.INFO, workload.words)
+        tell(workload.words)
         if keeper:
             keeper.keep_workload(workload)
 
@@ -77,10 +82,11 @@ def fly_on_screen(run: Run, bus: Bus, supervisor: Supervisor) -> Ending:
             supervisor,
             stick,
             follower=follower,
-            coach=LiveCoach(run, lambda words: bus.event(Severity.INFO, words)),
+            coach=LiveCoach(run, tell),
             keeper=keeper,
             on_workload=on_workload,
             instructing=Instructing(Asker(bus, "instructor") if run.simulated else None),
+            tell=tell,
         )
     finally:
         for words in keeper.close() if keeper else ():

@@ -21,6 +21,7 @@ class Profile(NamedTuple):
         unit: That they are in, m/s.
         modes: Custom modes, main and sub, that it is asked for.
         bytewise: A whole number's bits travel in a parameter's float; else the float has its value.
+        since: The oldest firmware, major and minor, whose parameters and modes are those that are known here.
         tested: It has been flown with this program, if only a simulation of it.
     """
 
@@ -30,6 +31,7 @@ class Profile(NamedTuple):
     unit: float
     modes: frozenset[tuple[float, float]]
     bytewise: bool
+    since: tuple[int, int]
     tested: bool
 
     @property
@@ -39,9 +41,18 @@ class Profile(NamedTuple):
 
 
 PROFILES: Mapping[Autopilot, Profile] = {
-    Autopilot.PX4: Profile("PX4", px4.JUDGED, px4.SPEEDS, 1.0, px4.MODES, bytewise=True, tested=True),
+    Autopilot.PX4: Profile(
+        "PX4", px4.JUDGED, px4.SPEEDS, 1.0, px4.MODES, bytewise=True, since=px4.SINCE, tested=True
+    ),
     Autopilot.ARDUPILOT: Profile(
-        "ArduPilot", ardupilot.JUDGED, ardupilot.SPEEDS, 0.01, ardupilot.MODES, bytewise=False, tested=False
+        "ArduPilot",
+        ardupilot.JUDGED,
+        ardupilot.SPEEDS,
+        0.01,
+        ardupilot.MODES,
+        bytewise=False,
+        since=ardupilot.SINCE,
+        tested=False,
     ),
 }
 _UNKNOWN = (
@@ -52,6 +63,12 @@ _UNKNOWN = (
 def profile_of(autopilot: int) -> Profile | None:
     """Return an autopilot's profile, or None where nothing is known of it."""
     return next((profile for kind, profile in PROFILES.items() if kind == autopilot), None)
+
+
+def outdated(profile: Profile, firmware: str) -> bool:
+    """Say whether a firmware, as in 1.15.2 or 1.16.0 (beta), is older than what is known; unknown is not old."""
+    numbers = [part for part in firmware.partition(" ")[0].split(".")[:2] if part.isdecimal()]
+    return len(numbers) == 2 and (int(numbers[0]), int(numbers[1])) < profile.since
 
 
 def unsafe_for(profile: Profile | None, values: Mapping[str, float]) -> str:

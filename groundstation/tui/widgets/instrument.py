@@ -98,7 +98,9 @@ class Instrument(Composed, can_focus=False):
         changed = [y for y in range(height) if rows[y] != self._rows[y]]
         self._rows = rows
         if changed:
-            self.refresh(*_bands(changed, width))
+            # With what stands beside it: a line of which a part is painted must be cut first.
+            beside = self.gutter
+            self.refresh(*_bands(changed, -beside.left, width + beside.width))
 
     def _note(self, frame: Frame) -> None:
         """Write into the upper border what it is and how old, and below the footnote, or that it is stale."""
@@ -173,9 +175,7 @@ class Instrument(Composed, can_focus=False):
         segments = [Segment(tone.name, ground + styles[Tone.STALE if old else tone]) for tone in Tone]
         for each in self.get_line_filters():
             segments = each.apply(segments, background)
-        self._styles = {
-            tone: segment.style or ground for tone, segment in zip(Tone, segments, strict=True)
-        }
+        self._styles = {tone: segment.style or ground for tone, segment in zip(Tone, segments, strict=True)}
         return self._styles
 
     def notify_style_update(self) -> None:
@@ -195,12 +195,12 @@ def _rounded(age: float) -> str:
     return f"<{_FRESH_S:g} s" if age < _FRESH_S else span_of_time(math.floor(10.0 * age) / 10.0)
 
 
-def _bands(lines: list[int], width: int) -> list[Region]:
+def _bands(lines: list[int], x: int, width: int) -> list[Region]:
     """Return the regions of lines in ascending order; neighbours are one, which is cheaper to compose."""
     bands: list[Region] = []
     for y in lines:
         if bands and bands[-1].bottom == y:
-            bands[-1] = Region(0, bands[-1].y, width, y + 1 - bands[-1].y)
+            bands[-1] = Region(x, bands[-1].y, width, y + 1 - bands[-1].y)
         else:
-            bands.append(Region(0, y, width, 1))
+            bands.append(Region(x, y, width, 1))
     return bands

@@ -63,6 +63,13 @@ def test_advice_gives_way_before_the_words_do():
     assert "◇" not in told
 
 
+def test_a_path_gives_way_before_what_is_wrong_with_it_does():
+    text = "/tmp/groundstation-27993-cb8b95/hand.sock: it is silent; check the program that moves the handle."
+    assert line(text, Severity.WARNING).startswith(
+        " ▲ It is silent; check the program that moves the handle. "
+    )
+
+
 def test_one_long_clause_ends_after_a_whole_word_and_says_so():
     text = "Takeoff refused: the vehicle says that its position is not good enough to fly by yet."
     told = line(text, Severity.ALARM, width=60)

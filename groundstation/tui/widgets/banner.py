@@ -70,6 +70,8 @@ def _ever_shorter(alarm: Alarm, now: float) -> Iterator[str]:
     yield headline(brief, now)
     mark = MARKS[alarm.severity]
     yield f"{mark} {brief.text}"
+    # Of whom it is said, where that is only a path.
+    yield f"{mark} {_capital(re.sub(r'^/[^ ]*: ', '', brief.text))}"
     yield f"{mark} {_capital(re.split(r'[:;.] ', brief.text)[-1])}"
 
 

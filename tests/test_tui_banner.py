@@ -66,7 +66,7 @@ def test_advice_gives_way_before_the_words_do():
 def test_a_path_gives_way_before_what_is_wrong_with_it_does():
     text = "/tmp/groundstation-27993-cb8b95/hand.sock: it is silent; check the program that moves the handle."
     assert line(text, Severity.WARNING).startswith(
-        " ▲ It is silent; check the program that moves the handle. "
+        " ▲  It is silent; check the program that moves the handle. "
     )
 
 

@@ -34,7 +34,8 @@ def draw_ghost(canvas: Canvas, view: View, frame: Frame, *, named: bool) -> None
         return
     dots = view.dots(np.array(ghost_trail(track, elapsed, _TRAIL_S)))
     shares = np.linspace(0.0, 1.0, max(round(track.every_s / _DOT_S), 1), endpoint=False)
-    canvas.plot(*((axis[:-1, None] + np.diff(axis)[:, None] * shares).ravel() for axis in dots), Tone.MUTED)
+    across, down = ((axis[:-1, None] + np.diff(axis)[:, None] * shares).ravel() for axis in dots)
+    canvas.plot(across, down, Tone.MUTED)
     x, y = (float(axis[-1]) for axis in dots)
     canvas.line([x - _DOTS, x, x + _DOTS, x, x - _DOTS], [y, y - _DOTS, y, y + _DOTS, y], Tone.MUTED)
     if named:

@@ -89,7 +89,7 @@ def _bindings() -> list[BindingType]:
     ]
 
 
-class FlightScreen(Screen[None], Composed):
+class FlightScreen(Screen[None], Composed):  # pyright: ignore[reportIncompatibleMethodOverride] - Textual's
     """The instruments, laid out once and then only painted.
 
     Args:

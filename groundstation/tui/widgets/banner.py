@@ -52,12 +52,12 @@ def _fitting(lefts: list[str], rights: list[str], width: int) -> tuple[str, str]
     return f"{head} …" if more else head, rights[-1]
 
 
-def headline(alarm: Alarm, now: float) -> str:
-    """Return an alarm in a line: priority, how often, whether it is over or seen, and what it is."""
+def headline(alarm: Alarm, now: float, sign: str = "") -> str:
+    """Return an alarm in a line: its priority or a sign, how often, whether it is over or seen, and what it is."""
     times = f" ×{alarm.count}" if alarm.count > 1 else ""
     seen = " seen" if alarm.seen else ""
     over = "" if alarm.active else f" {span_of_time(now - alarm.ended)} ago"
-    return f"{PRIORITIES[alarm.severity]}{times}{seen}{over}  {alarm.text}"
+    return f"{sign or PRIORITIES[alarm.severity]}{times}{seen}{over}  {alarm.text}"
 
 
 def _ever_shorter(alarm: Alarm, now: float) -> Iterator[str]:
@@ -69,10 +69,10 @@ def _ever_shorter(alarm: Alarm, now: float) -> Iterator[str]:
     brief = replace(alarm, text=_reason(alarm.text))
     yield headline(brief, now)
     mark = MARKS[alarm.severity]
-    yield f"{mark} {brief.text}"
+    yield headline(brief, now, mark)
     # Of whom it is said, where that is only a path.
-    yield f"{mark} {_capital(re.sub(r'^/[^ ]*: ', '', brief.text))}"
-    yield f"{mark} {_capital(re.split(r'[:;.] ', brief.text)[-1])}"
+    for words in (re.sub(r"^/[^ ]*: ", "", brief.text), re.split(r"[:;.] ", brief.text)[-1]):
+        yield headline(replace(alarm, text=_capital(words)), now, mark)
 
 
 def _reason(text: str) -> str:

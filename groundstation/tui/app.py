@@ -35,6 +35,7 @@ from groundstation.tui.checks import red
 from groundstation.tui.checks_kept import ArmedChecks
 from groundstation.tui.choices import CHOICES, PRESETS_EXPLAINED, Choice
 from groundstation.tui.everywhere import KEYS
+from groundstation.tui.finding import DeviceWatch
 from groundstation.tui.frame import Frame, Reader, Supervisor, workspace
 from groundstation.tui.guarding import GuardWatch
 from groundstation.tui.hand import Hand, StickSender
@@ -133,7 +134,7 @@ class FlightApp(Schooling):
         self.theme = THEME.name
         self.hand = Hand()
         self._supervisor, self._stick, self._clock = supervisor, stick, clock
-        self._guard = GuardWatch()
+        self._guard, self._device = GuardWatch(), DeviceWatch()
         self._track, self._history = Track(), History()
         self._alarms, self._pace = Alarms(), PaintPace(run.settings.rates.screen)
         self._started = self._snapshot.t
@@ -227,6 +228,7 @@ class FlightApp(Schooling):
             stick=self.hand.share if self._stick is not None else None,
             hindrances={each.name: each.hindrance(snapshot) for each in (*ACTS, *CHOICES)},
             guarded_by=self._guard.look(snapshot),
+            device_found=self._device.look(snapshot),
             notes=tuple(self._answers.notes),
             track=self._track,
             history=self._history,

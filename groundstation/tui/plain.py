@@ -27,6 +27,7 @@ from groundstation.tui.acts import ACTS, BY_NAME, Act, Ask, coupled, in_air
 from groundstation.tui.checks import checks
 from groundstation.tui.checks_kept import ArmedChecks
 from groundstation.tui.choices import CHOICES, CHOICES_BY_NAME, Wishes
+from groundstation.tui.finding import DeviceWatch
 from groundstation.tui.frame import Frame, Reader, Supervisor, workspace
 from groundstation.tui.guarding import GuardWatch
 from groundstation.tui.hand import Hand, StickSender
@@ -80,7 +81,8 @@ class PlainFlight:
         self._director, self._coach = director, coach
         self._run, self._console, self._supervisor, self._tell = run, console, supervisor, tell
         self._hand = hand
-        self._answers, self._wishes, self._guard = Answers(), Wishes(), GuardWatch()
+        self._answers, self._wishes = Answers(), Wishes()
+        self._guard, self._device = GuardWatch(), DeviceWatch()
         self._track, self._history = Track(), History()
         self._asked: tuple[Callable[[], None], frozenset[str], float] | None = None
         self._confirmed_real = run.simulated
@@ -238,6 +240,7 @@ class PlainFlight:
             stick=self._hand.share if self._hand is not None else None,
             hindrances={each.name: each.hindrance(snapshot) for each in (*ACTS, *CHOICES)},
             guarded_by=self._guard.look(snapshot),
+            device_found=self._device.look(snapshot),
             notes=tuple(self._answers.notes),
             track=self._track,
             history=self._history,

@@ -161,6 +161,9 @@ def _complain(words: str) -> None:
 
 def _check(asked: argparse.Namespace) -> None:
     """Refuse combinations that mean nothing, before anything starts."""
+    if (folder := os.environ.get("TMPDIR")) and not Path(folder).is_dir():
+        # MAVSDK would end the link by it.
+        raise InputError(f"TMPDIR: {folder}: there is no such folder; make it, or unset TMPDIR.")
     if asked.headless and not asked.mission:
         raise InputError("--headless needs a --mission to fly; see 'groundstation missions list'.")
     if asked.headless and asked.device and not asked.device.startswith(_EMULATED):

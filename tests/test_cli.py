@@ -4,6 +4,7 @@ import os
 import resource
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
@@ -141,7 +142,7 @@ def test_what_is_wrong_gets_one_sentence_and_exit_2(tmp_path, arguments, words):
 )
 def test_no_room_for_the_output_is_said_in_one_sentence(tmp_path, arguments):
     command = [sys.executable, "-m", "groundstation.cli", *arguments]
-    with open("/dev/full", "w") as full:
+    with Path("/dev/full").open("w") as full:
         done = subprocess.run(
             command, stdout=full, stderr=subprocess.PIPE, text=True, cwd=tmp_path, check=False
         )

@@ -49,7 +49,9 @@ def write_comparison(paths: Sequence[Path], out: Path) -> None:
     try:
         stream.save(out, default_blueprint=_blueprint())
     except RuntimeError as error:
-        raise InputError(f"{out}: cannot be written ({error}); free the disk, or choose another --out.") from error
+        raise InputError(
+            f"{out}: cannot be written ({error}); free the disk, or choose another --out."
+        ) from error
     for still in static_scene(flights[0].mission):
         # Of the scene only what stands still is of use; what moves is drawn for each flight.
         if "/vehicle" not in still.path:

@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+from collections import deque
+
 from groundstation.training.director import Stage
+from groundstation.training.happening import Happening
+from groundstation.training.in_force import InForce
 from groundstation.training.measurer import HandSight, Measurer, VehicleSight
 from groundstation.training.mission import Mission
 
@@ -23,11 +27,17 @@ class Attempts:
         self._mission, self._radius = mission, radius
         self.current = Measurer(mission, radius)
         self.landed: list[Measurer] = []
+        self._instructed: deque[tuple[float, Happening]] = deque()
+        self._in_force = InForce()
 
     @property
     def judged(self) -> Measurer:
         """The one that a run is judged by: the last that landed, else the one under way."""
         return self.landed[-1] if self.landed else self.current
+
+    def instruct(self, t: float, happening: Happening) -> None:
+        """Take note of what an instructor let happen at `t`, s; such notes come in the order of their times."""
+        self._instructed.append((t, happening))
 
     def show(self, sight: VehicleSight | HandSight) -> None:
         """Take note of a sight; they come in the order of their times."""
@@ -37,7 +47,14 @@ class Attempts:
         if self.current.director.stage is Stage.DONE and sight.armed and sight.in_air:
             coupled = self.current.coupled
             self.current = Measurer(self._mission, self._radius, coupled=coupled)
+        while self._instructed and self._instructed[0][0] <= sight.t:
+            t, happening = self._instructed.popleft()
+            self._in_force.take(happening, t)
+            self.current.instructed |= self.current.flying
         before = self.current.director.stage
         self.current.vehicle(sight)
+        if self.current.flying and before is Stage.WAITING:
+            # What was done on the ground counts as far as it lasts.
+            self.current.instructed = bool(self._in_force.at(sight.t))
         if self.current.director.stage is Stage.DONE and before is not Stage.DONE:
             self.landed.append(self.current)

@@ -9,6 +9,7 @@ from groundstation.console import Snapshot
 from groundstation.messages import (
     EVENT_TEXT,
     HANDLE,
+    INTERVENTION_ANSWER,
     MISSION_PROGRESS,
     PART_TEXT,
     PILOT_STATE,
@@ -22,6 +23,7 @@ from groundstation.messages import (
 from groundstation.training.attempts import Attempts
 from groundstation.training.conducting import Conductor
 from groundstation.training.director import Director
+from groundstation.training.happening import INSTRUCTOR, unpacked
 from groundstation.training.judgement import Judgement, judgement_of
 from groundstation.training.measurer import HandSight, Measurer, VehicleSight
 from groundstation.training.measures import Measures
@@ -59,6 +61,7 @@ class MissionFollower:
         self._statuses = bus.subscriber(VEHICLE_STATUS)
         self._pilots = bus.subscriber(PILOT_STATE)
         self._handles = bus.subscriber(HANDLE)
+        self._interventions = bus.subscriber(INTERVENTION_ANSWER)
         self._conductor = Conductor(mission, bus)
         self._progress = bus.publisher(MISSION_PROGRESS)
         self._losses = bus.publisher(POINTS_LOST)
@@ -85,6 +88,10 @@ class MissionFollower:
         self._show(self._sights.rest())
 
     def _read(self) -> None:
+        for done in self._interventions.drain():
+            happening = unpacked(done.happening)
+            if done.ok and done.source == INSTRUCTOR and happening is not None:
+                self.attempts.instruct(done.t, happening)
         # The order matters: see `Sights`.
         states = list(self._states.drain())
         statuses = list(self._statuses.drain())

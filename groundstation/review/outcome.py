@@ -62,7 +62,7 @@ def outcome_of(flight: Flight) -> Outcome:
 def attempts_of(flight: Flight, mission: Mission) -> Attempts:
     """Return what has seen all of a recording of a mission."""
     attempts = Attempts(mission, radius_of(mission))
-    for t, happening in instructed(flight):
+    for t, happening in sorted(instructed(flight), key=lambda done: done[0]):
         attempts.instruct(t, happening)
     for sight in sights(flight):
         attempts.show(sight)

@@ -88,7 +88,7 @@ class MissionFollower:
         self._show(self._sights.rest())
 
     def _read(self) -> None:
-        for done in self._interventions.drain():
+        for done in sorted(self._interventions.drain(), key=lambda answer: answer.t):
             happening = unpacked(done.happening)
             if done.ok and done.source == INSTRUCTOR and happening is not None:
                 self.attempts.instruct(done.t, happening)

@@ -15,6 +15,7 @@ from groundstation.messages import (
     EVENT,
     HANDLE,
     INTERVENTION_ANSWER,
+    MISSION_PROGRESS,
     PILOT_STATE,
     POINTS_LOST,
     VEHICLE_STATE,
@@ -29,7 +30,9 @@ from groundstation.training.follower import MissionFollower
 from groundstation.training.happening import packed
 from groundstation.training.judgement import judgement_of
 from groundstation.training.measures import Measures
+from groundstation.training.score import score_of
 from groundstation.training.sights import Sights
+from groundstation.training.telling import so_far
 
 RUN = canned_run()
 PAR = Measures(time_s=20.0, reached=1.0, rms_error_m=0.2)
@@ -121,6 +124,22 @@ def test_a_follower_sees_every_record_and_tells_where_points_were_lost(bus):
         (moment.t, moment.lost, moment.part) for moment in expected.story
     ]
     assert follower.complete
+
+
+def test_a_follower_tells_the_score_as_it_grows(bus):
+    follower = MissionFollower(RUN.mission, bus, PAR)
+    progress = bus.subscriber(MISSION_PROGRESS)
+    publishers = [bus.publisher(topic) for topic in (VEHICLE_STATE, VEHICLE_STATUS, PILOT_STATE, HANDLE)]
+    flight = CannedFlight(RUN)
+    follower.look(flight.snapshot())
+    assert progress.newest().score == b""
+    for records in FLOWN[:200]:
+        flight.advance(STEP_S)
+        for publisher, record in zip(publishers, records, strict=True):
+            publisher.send(record)
+    follower.look(flight.snapshot())
+    measured = score_of(RUN.mission, follower.measurer.measures(), PAR)
+    assert progress.newest().score.decode() == so_far(measured)
 
 
 def test_a_follower_that_is_held_up_says_that_it_missed_something(bus):

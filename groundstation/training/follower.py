@@ -14,6 +14,7 @@ from groundstation.messages import (
     PART_TEXT,
     PILOT_STATE,
     POINTS_LOST,
+    SCORE_TEXT,
     VEHICLE_STATE,
     VEHICLE_STATUS,
     PointsLost,
@@ -28,10 +29,13 @@ from groundstation.training.judgement import Judgement, judgement_of
 from groundstation.training.measurer import HandSight, Measurer, VehicleSight
 from groundstation.training.measures import Measures
 from groundstation.training.mission import Mission
+from groundstation.training.score import score_of
 from groundstation.training.sights import Sights
 from groundstation.training.story import Moment
+from groundstation.training.telling import so_far
 from sim.airframe import load_airframe
 
+_SCORE_EVERY_S = 1.0
 _HELD_UP = (
     "Held up for seconds, handle samples were missed: 'groundstation review --score' has the exact score."
 )
@@ -57,6 +61,7 @@ class MissionFollower:
         self.complete = True
         self._bus, self._par = bus, par
         self._sights = Sights()
+        self._score, self._next_score = b"", 0.0
         self._states = bus.subscriber(VEHICLE_STATE)
         self._statuses = bus.subscriber(VEHICLE_STATUS)
         self._pilots = bus.subscriber(PILOT_STATE)
@@ -80,12 +85,22 @@ class MissionFollower:
         """Take note of what is new, and tell the bus how it is going."""
         self._read()
         self._conductor.look(self.director, view.t)
-        self._progress.send(self.director.progress(view.t))
+        progress = self.director.progress(view.t)
+        progress.score = self._score_so_far(view.t)
+        self._progress.send(progress)
 
     def finish(self) -> None:
         """Take note of what is left, when no more records come."""
         self._read()
         self._show(self._sights.rest())
+
+    def _score_so_far(self, t: float) -> bytes:
+        """Return the score in words, for an instructor; it takes some milliseconds, so not every time."""
+        if t >= self._next_score:
+            self._next_score = t + _SCORE_EVERY_S
+            score = score_of(self.director.mission, self.measurer.measures(), self._par)
+            self._score = fit(so_far(score), SCORE_TEXT) if score and self.director.elapsed(t) > 0.0 else b""
+        return self._score
 
     def _read(self) -> None:
         for done in sorted(self._interventions.drain(), key=lambda answer: answer.t):

@@ -125,7 +125,7 @@ def _kinds() -> dict[str, _Kind]:
 def _values(parser: argparse.ArgumentParser, command: str) -> Iterator[tuple[str, argparse.Action]]:
     """Yield all that takes a value, with the command it belongs to."""
     for action in parser._actions:  # noqa: SLF001 - argparse has no other way to them
-        if isinstance(action, argparse._SubParsersAction):  # noqa: SLF001
+        if isinstance(action.choices, dict):
             for name, parts in action.choices.items():
                 yield from _values(parts, f"{command} {name}".strip())
         elif action.nargs != 0 and not action.choices:

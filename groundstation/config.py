@@ -315,7 +315,9 @@ def load_settings(path: Path | None) -> Settings:
         tables = tomllib.loads(file.read_text(encoding="utf-8"))
     except OSError as error:
         raise ConfigError(f"{file}: cannot be read ({error.strerror}); check the path.") from error
-    except (UnicodeDecodeError, tomllib.TOMLDecodeError, RecursionError) as error:
+    except UnicodeDecodeError as error:
+        raise ConfigError(f"{file}: is not UTF-8 text; settings are TOML files.") from error
+    except (tomllib.TOMLDecodeError, RecursionError) as error:
         raise ConfigError(f"{file}: is not valid TOML: {error}.") from error
     if where := not_finite(tables):
         raise ConfigError(f"{file}: {where}: is not a finite number; give a plain number.")

@@ -118,12 +118,13 @@ class Measurer:
         took_off_t, end_t: When it took off, and landed or was seen last, s; NaN before.
         held_t: When the target had been held for long enough, s; NaN before.
         place: Where it was seen last, world, m.
+        instructed: An instructor let something happen: it was not flown under the mission's own conditions.
     """
 
     def __init__(self, mission: Mission, radius: float, *, coupled: bool = False) -> None:
         self._world = World(mission.obstacle)
         self._way = way_of(mission)
-        self.coupled = coupled
+        self.coupled, self.instructed = coupled, False
         self.director = Director(mission, self._world, radius)
         self.vehicle_rows = Rows(VehicleRow.numbers, VehicleRow.of, 7)
         self.hand_rows = Rows(HandRow.numbers, HandRow.of, 5)

@@ -112,9 +112,12 @@ class Instrument(Composed, can_focus=False):
         old = f"▲ {span_of_time(age)} old" if math.isfinite(age) else "no data yet"
         below = old if stale else self.footnote(frame)
         above = f"{self.title} · {_rounded(age)}" if self.title and math.isfinite(age) else self.title
-        if (above, below) != self._borders:
-            self._borders = (above, below)
-            self.border_title, self.border_subtitle = above, below
+        # To ask Textual for what it has makes markup of it each time.
+        written, self._borders = self._borders, (above, below)
+        if above != written[0]:
+            self.border_title = above
+        if below != written[1]:
+            self.border_subtitle = below
 
     def render_lines(self, crop: Region) -> list[Strip]:
         """Return the whole, of which only the lines that have changed are composed anew; of a part all are."""

@@ -55,7 +55,7 @@ from groundstation.tui.track import History, Track
 from groundstation.tui.viewer import Viewer
 from groundstation.tui.widgets.stick import YAW, stays
 
-_POLL_S = 0.1
+_ALARMS_S = 0.1
 _LOOK_S = 0.5
 
 
@@ -139,7 +139,7 @@ class FlightApp(Schooling):
         self._alarms, self._pace = Alarms(), PaintPace(run.settings.rates.screen)
         self._started = self._snapshot.t
         self._start = start_of(run.started, datetime.datetime.now().astimezone(), clock())
-        self._next_poll = self._next_look = 0.0
+        self._next_alarms = self._next_look = 0.0
         self._keepalive = Keepalive(self._send_stick, clock)
         self._instructing = instructing or Instructing(None)
         self._flight = FlightScreen(self.hand if stick is not None else None)
@@ -177,10 +177,8 @@ class FlightApp(Schooling):
         self._keepalive.turned()
         snapshot = self._snapshot = self._reader.snapshot()
         self.follow(snapshot)
-        polled = snapshot.t >= self._next_poll
-        if polled:
-            self._next_poll = snapshot.t + _POLL_S
-            self._supervisor.poll()
+        # A process that has died uncouples: it is asked each time, for it costs next to nothing.
+        self._supervisor.poll()
         for note in self._answers.take(snapshot):
             severity = "error" if note.severity is Severity.ALARM else "warning"
             self.notify(note.text, severity=severity, timeout=6.0, markup=False)
@@ -192,7 +190,8 @@ class FlightApp(Schooling):
             self._track.add(east, north, up, snapshot.vehicle.t)
         self._history.add(snapshot, stale_s)
         frame = self._frame(snapshot)
-        if polled:
+        if snapshot.t >= self._next_alarms:
+            self._next_alarms = snapshot.t + _ALARMS_S
             self._alarms.look(conditions(frame), snapshot.t)
             if self._alarms.ring(snapshot.t):
                 self.bell()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 
 from mavsdk import System
@@ -100,7 +101,7 @@ class ParameterDesk:
     def _hear(self, judged: Judged, value: float, now: float) -> None:
         """Judge anew what the vehicle told, and say so where it is not what it was."""
         before = self._parameters.hear(judged.name, value)
-        if before == value:
+        if before == value or (before is not None and math.isnan(before) and math.isnan(value)):
             return
         self._judged[judged.name] = self._send(Read(judged.name, value, judged.whole), now)
         if before is not None:

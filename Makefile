@@ -6,7 +6,7 @@ export UV_PYTHON_DOWNLOADS := never
 export UV_PROJECT_ENVIRONMENT := .venv
 unexport VIRTUAL_ENV
 
-.PHONY: help fly school test flights others coverage check audit format bench docs-pictures clean
+.PHONY: help fly school test coverage check audit format bench docs-pictures clean
 help: ## list the targets
 	@grep -E '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## (.*)/  make \1\t\2/' | expand -t 22
 
@@ -22,21 +22,13 @@ fly: .venv/.synced ## start a training flight on the simulated vehicle
 school: .venv/.synced ## learn to fly: mission by mission, with a coach
 	@$(BIN)/groundstation school
 
-test: check ## run every check and every test
-	@$(MAKE) --no-print-directory --jobs 2 flights others
-
 # What runs real processes in real time: as many flights at a time as there are processors, for one takes half of one.
-# What fails is flown once more, one after the other, before it counts: a machine that others use, too, takes the
-# processor away for a second now and then.
-flights: .venv/.synced
-	@$(BIN)/pytest --numprocesses auto --dist loadfile -m flight || $(BIN)/pytest -m flight --last-failed
-
-# The rest has what flights leave of the processors, and gives way to them at once (Linux' SCHED_IDLE). It is printed at
-# its end; Ctrl-C ends both.
-others: .venv/.synced
-	@mkdir -p build
-	@chrt --idle 0 $(BIN)/pytest -p no:cacheprovider --numprocesses auto --dist loadfile -m "not flight" \
-		> build/others.txt 2>&1; ended=$$?; cat build/others.txt; exit $$ended
+# What fails is flown alone, and once more before it counts: a machine that others use, too, takes the processor away
+# for a second now and then.
+test: check ## run every check and every test
+	@$(BIN)/pytest --numprocesses auto --dist loadfile -m "not flight"
+	@$(BIN)/pytest --numprocesses auto --dist loadfile -m flight \
+		|| $(BIN)/pytest -m flight --last-failed || $(BIN)/pytest -m flight --last-failed
 
 coverage: .venv/.synced ## run every test and print which lines no test reached
 	@$(BIN)/pytest --numprocesses auto --dist loadfile -m "not flight" --cov --cov-report=

@@ -61,7 +61,7 @@ class ParameterDesk:
         if command.kind == CommandKind.PARAMETERS:
             self._parameters.fetch_all(command.number)
             return ""
-        name, amount = command.name.decode(), command.amount
+        name, amount = command.name.decode(errors="replace"), command.amount
         whole = self._whole.get(name)
         if whole is None:
             return f"{name} has not been read; read the parameters first"

@@ -36,7 +36,7 @@ from pymavlink import mavutil
 from pymavlink.dialects.v20 import common as mavlink
 
 from drivers import stick
-from groundstation.messages import Phase, Severity
+from groundstation.messages import CommandKind, Phase, Severity
 from groundstation.recording import schema
 from groundstation.review.flight import Flight
 
@@ -152,10 +152,15 @@ def test_a_frozen_link_lets_nothing_out_and_nothing_old_when_it_wakes(flight):
         assert lost_offboard(flight, stopped) < 1.2 + SLACK_S
         until(lambda: is_safe(flight.tap), 6, "the vehicle is safe by its own failsafe")
         assert max(t for t, _ in flight.tap.setpoints) - stopped < SLACK_S
+        asked_t = time.monotonic()
+        flight.program.console.command(CommandKind.KILL)
+        time.sleep(2.1)
     finally:
         flight.tap.setpoints.clear()
         flight.signal(signal.SIGCONT, "link")
+    flight.told("the link stood still", asked_t)
     flight.stays_uncoupled(2.0)
+    assert flight.program.console.snapshot().status.armed
 
 
 def test_a_link_whose_interpreter_is_held_for_8_s_lets_nothing_out(flight):

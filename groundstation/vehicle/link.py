@@ -68,6 +68,8 @@ _DISCOVERY_S = 0.05
 _DEFAULT_TAKEOFF_M = 2.0
 _REASON_S = 1.5
 _LEAVE_S = 0.2
+# A command that has waited for longer, while this process stood still, is nobody's wish any more.
+_LATE_S = 2.0
 # Three heartbeats: a vehicle whose heartbeats tell no autopilot that is known has none.
 _INTRODUCTION_S = 3.0
 
@@ -241,6 +243,10 @@ class Link:
             return
         if self._commander is None or self._desk is None:
             self._answer(number, kind, ok=False, text="no vehicle is connected", now=now)
+            return
+        if (late := now - command.t) > _LATE_S and kind is not CommandKind.HOLD:
+            text = f"the link stood still for {late:.0f} s since; ask again"
+            self._answer(number, kind, ok=False, text=text, now=now)
             return
         if kind in PARAMETER_COMMANDS:
             if why := self._desk.obey(command, armed=self._view.armed or self._view.in_air):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from typing import NamedTuple
 
@@ -77,8 +78,12 @@ def unsafe_for(profile: Profile | None, values: Mapping[str, float]) -> str:
 
 
 def speed_limits(profile: Profile | None, values: Mapping[str, float]) -> Vector3:
-    """Return the largest speeds that a vehicle allows, m/s: around, up, down; 0 where that is not known."""
+    """Return the largest speeds that a vehicle allows, m/s: around, up, down; 0 where that is not known.
+
+    What is no speed, as a negative one, is not known; preflight tells what is wrong with it.
+    """
     if profile is None:
         return 0.0, 0.0, 0.0
-    around, up, down = (values.get(name, 0.0) * profile.unit for name in profile.speeds)
+    told = (values.get(name, 0.0) * profile.unit for name in profile.speeds)
+    around, up, down = (speed if math.isfinite(speed) and speed > 0.0 else 0.0 for speed in told)
     return around, up, down

@@ -335,6 +335,14 @@ class Signed:
         return messages
 
 
+def test_whoever_asks_a_station_for_its_parameters_is_not_heard(tmp_path):
+    signed = Signed(tmp_path)
+    signed.say(signed.plain.param_request_list_encode(255, 190), signed.signer)
+    signed.say_heartbeat()
+    assert [each.get_type() for each in signed.ears.heard] == ["HEARTBEAT"]
+    signed.logged()
+
+
 def test_what_radios_tell_makes_no_silent_vehicle_alive(tmp_path):
     signed = Signed(tmp_path)
     signed.say_heartbeat()

@@ -24,6 +24,9 @@ if TYPE_CHECKING:
     from mavsdk import Mavsdk
 
 _SETUP_SIGNING = 256
+# PARAM_REQUEST_READ and _LIST, PARAM_SET, and the same of PARAM_EXT: whoever asks a station for its parameters. It has
+# none, and MAVSDK's answer to a name that is no text goes to the terminal.
+_NOT_FOR_STATIONS = frozenset({20, 21, 23, 320, 321, 323})
 _WINDOW_S = 5.0
 _HALF = 128
 
@@ -157,7 +160,8 @@ class Pump:
                 if self._signing and not self._signing.trusts(frame):
                     self.refused += message_number(frame) not in NEVER_SIGNED
                     continue
-                mavsdk.pass_received_raw_bytes(legible(frame))
+                if message_number(frame) not in _NOT_FOR_STATIONS:
+                    mavsdk.pass_received_raw_bytes(legible(frame))
                 self._watch(
                     frame, message if isinstance(message, mavlink.MAVLink_heartbeat_message) else None
                 )

@@ -3,15 +3,10 @@
 The vehicle's side shows what became of each. Faults on this side: `test_flight_faults.py`.
 """
 
-import contextlib
 import math
 import os
 import pty
-import select
-import socket
-import threading
 import time
-import tty
 from pathlib import Path
 
 import pytest
@@ -29,6 +24,7 @@ from flight_support import (
     until,
 )
 
+from bench.radio import Radio
 from bench.rig import SETPOINT_ID
 from groundstation.messages import CommandKind, Phase
 
@@ -234,58 +230,6 @@ def test_a_vehicle_that_reboots_in_flight_is_disarmed_and_not_coupled(flight):
     flight.stays_uncoupled(2.0)
     # Everything is read anew, and flown with again by the same processes.
     assert flight.coupled().program.pids() == pids
-
-
-class Radio:
-    """A serial port with a vehicle behind it: a pseudo-terminal whose other end speaks UDP.
-
-    Args:
-        name: Path of the port; a link to whatever number the system gives it.
-        port: Where the vehicle is.
-    """
-
-    def __init__(self, name: Path, port: int) -> None:
-        self.name = name
-        self._air = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
-        self._air.connect(("127.0.0.1", port))
-        self._over = threading.Event()
-        self._ends: tuple[int, int] | None = None
-        self.plug()
-        self._thread = threading.Thread(target=self._relay)
-        self._thread.start()
-
-    def plug(self) -> None:
-        controller, device = pty.openpty()
-        tty.setraw(device)
-        os.set_blocking(controller, False)
-        self.name.unlink(missing_ok=True)
-        self.name.symlink_to(os.ttyname(device))
-        self._ends = controller, device
-
-    def unplug(self) -> float:
-        ends, self._ends = self._ends, None
-        time.sleep(0.15)
-        self.name.unlink()
-        unplugged = time.monotonic()
-        for end in ends:
-            os.close(end)
-        return unplugged
-
-    def close(self) -> None:
-        self._over.set()
-        self._thread.join()
-        self._air.close()
-
-    def _relay(self) -> None:
-        while not self._over.is_set():
-            ends = self._ends
-            for ready in select.select([self._air, *(ends or ())[:1]], [], [], 0.1)[0]:
-                # What does not fit is lost, as in a radio; so is what is sent while nobody is there.
-                with contextlib.suppress(OSError):
-                    if ready is not self._air:
-                        self._air.send(os.read(ready, 4096))
-                    elif (data := self._air.recv(65536)) and ends:
-                        os.write(ends[0], data)
 
 
 def share_of_a_core(pid: int, seconds: float) -> float:

@@ -37,8 +37,9 @@ def test_random_faults_kill_nothing_and_let_nothing_run_away():
         assert growth.descriptors <= STARTING_DESCRIPTORS, role
 
 
-def test_a_link_connected_and_cut_off_again_and_again_keeps_nothing():
-    readings = reconnect.cycles(20)
+@pytest.mark.parametrize("way", [reconnect.tcp, reconnect.serial])
+def test_a_link_connected_and_cut_off_again_and_again_keeps_nothing(way):
+    readings = reconnect.cycles(way, 20)
     # What is read in the moment of a cut has the old socket and the new one: the middle of half of them has not.
     grown = gauges.growth(readings[5:], share=0.5)
     print(grown)

@@ -24,8 +24,8 @@ if TYPE_CHECKING:
     from mavsdk import Mavsdk
 
 _SETUP_SIGNING = 256
-# PARAM_REQUEST_READ and _LIST, PARAM_SET, and the same of PARAM_EXT: whoever asks a station for its parameters. It has
-# none, and MAVSDK's answer to a name that is no text goes to the terminal.
+# PARAM_REQUEST_READ and _LIST, PARAM_SET, and the same of PARAM_EXT: whoever asks a station for its parameters. It
+# has none, and MAVSDK's answer to a name that is no text goes to the terminal.
 _NOT_FOR_STATIONS = frozenset({20, 21, 23, 320, 321, 323})
 _WINDOW_S = 5.0
 _HALF = 128

@@ -27,9 +27,11 @@ test: check ## run every check and every test
 
 # What runs real processes in real time: as many flights at a time as there are processors, for one takes half of one.
 # What fails is flown once more, one after the other, before it counts: a machine that others use, too, takes the
-# processor away for a second now and then.
+# processor away for a second now and then. On a busy machine: make test FLIGHTS=1.
+FLIGHTS ?= auto
 flights: .venv/.synced
-	@$(BIN)/pytest --numprocesses auto --dist loadfile -m flight || $(BIN)/pytest -m flight --last-failed
+	@$(BIN)/pytest --numprocesses $(FLIGHTS) --dist loadfile --no-loadscope-reorder -m flight || \
+		$(BIN)/pytest -m flight --last-failed
 
 # The rest has what flights leave of the processors, and gives way to them at once (Linux' SCHED_IDLE). It is printed at
 # its end; Ctrl-C ends both.

@@ -12,6 +12,8 @@ import sys
 
 from textual._styles_cache import StylesCache  # pyright: ignore[reportPrivateUsage]
 
+from groundstation import heap
+
 # How often it is tidied, s: a page that was closed since has left some hundred kilobytes.
 TIDY_S = 30.0
 # Painting may not keep the stick's thread waiting: it asks for its turn and gets it within a millisecond.
@@ -22,6 +24,7 @@ _THRESHOLDS = (2_000, 20, 100_000)
 
 def settle() -> None:
     """Take what there is for what stays."""
+    heap.take_one_arena()
     gc.collect()
     gc.freeze()
     gc.set_threshold(*_THRESHOLDS)
@@ -36,6 +39,7 @@ def tidy() -> None:
     """
     StylesCache.get_inner_outer.cache_clear()
     gc.collect()
+    heap.give_back()
 
 
 def leave() -> None:

@@ -16,8 +16,10 @@ from pathlib import Path
 import mavsdk
 from mavsdk import Configuration, Mavsdk, System
 
+from groundstation import heap
 from groundstation.bus import Bus
 from groundstation.child import Lifeline, run_child
+from groundstation.clock import Every
 from groundstation.errors import InputError
 from groundstation.frames import Vector4
 from groundstation.messages import (
@@ -43,7 +45,6 @@ from groundstation.run import Run
 from groundstation.vehicle.asleep import Sleep
 from groundstation.vehicle.commander import STEERING, Answer, Commander
 from groundstation.vehicle.gate import Gate
-from groundstation.vehicle.heap import Trimmer, take_one_arena
 from groundstation.vehicle.hearing import Hearing
 from groundstation.vehicle.identity import Identity
 from groundstation.vehicle.interventions import Interventions
@@ -344,8 +345,8 @@ class Link:
 
 def body(run: Run, bus: Bus, lifeline: Lifeline) -> None:
     """Run the link until the lifeline ends."""
-    take_one_arena()
-    trimmer = Trimmer()
+    heap.take_one_arena()
+    give_back = Every(heap.GIVE_BACK_S)
     notes: Notes = queue.SimpleQueue()
     # It complains of a connection that is about to come; its lines count from when that is there. Subscribing
     # anew then would free the callback that a thread of MAVSDK's may be in.
@@ -373,7 +374,8 @@ def body(run: Run, bus: Bus, lifeline: Lifeline) -> None:
     try:
         while lifeline.holds():
             link.turn()
-            trimmer.look(time.monotonic())
+            if give_back.due(time.monotonic()):
+                heap.give_back()
             link.wait()
         link.leave()
     finally:

@@ -3,8 +3,12 @@
 from __future__ import annotations
 
 import contextlib
+import os
 import re
+import signal
+import termios
 import time
+from pathlib import Path
 
 import pytest
 from pymavlink.dialects.v20 import common as mavlink
@@ -135,3 +139,30 @@ def test_a_real_vehicle_is_typed_for_and_another_that_takes_over_is_told_and_not
             program.close()
             hand.close()
             tap.close()
+
+
+def test_a_screen_that_was_stopped_goes_on_with_the_same_threads_and_leaves_the_terminal_as_it_was(tmp_path):
+    program = Program("--sim", "--mission", "hover", "--logs", str(tmp_path), columns=80, rows=24)
+    screen = program.process.pid
+    threads = lambda: len(list(Path(f"/proc/{screen}/task").iterdir()))  # noqa: E731
+    flags = lambda: termios.tcgetattr(program._controller)[:4]  # noqa: E731
+    cooked = termios.tcgetattr(os.openpty()[1])[:4]
+    try:
+        program.until(lambda view: view.status and view.status.connected, 40, "heard")
+        shows(program, "SIM")
+        before, raw = threads(), flags()
+        for _ in range(3):
+            program.screen.clear()
+            program.process.send_signal(signal.SIGSTOP)
+            time.sleep(0.2)
+            program.process.send_signal(signal.SIGCONT)
+            # The whole is painted anew, with what does not change.
+            shows(program, "attitude stick force")
+        assert threads() == before
+        assert flags() == raw != cooked
+        press(program, F7, lambda view: b"round trip, loss" in program.screen, "a key is heard")
+        program.process.send_signal(signal.SIGTERM)
+        program.process.wait(30)
+        assert flags() == cooked
+    finally:
+        program.close()

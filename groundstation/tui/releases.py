@@ -39,7 +39,24 @@ class ReleaseParser(XTermParser):
 
 
 class ReleaseDriver(LinuxDriver):
-    """Asks the terminal for releases, too."""
+    """Asks the terminal for releases, too, and goes on in good order after SIGSTOP."""
+
+    def _sigcont_application(self, *_: object) -> None:
+        """Take the terminal anew.
+
+        After SIGSTOP, of which no word comes, it was never given up. To take it a second time would leave two threads
+        that read its keys, and at the end a terminal as the program had it and not the shell.
+        """
+        if self._must_signal_resume:
+            super()._sigcont_application()
+        elif self._auto_restart:
+            # Not in the signal's handler: it may have come in the midst of writing.
+            self._loop.call_soon_threadsafe(self._take_anew)
+
+    def _take_anew(self) -> None:
+        self.suspend_application_mode()
+        self.resume_application_mode()
+        self._app.refresh()
 
     def write(self, data: str) -> None:
         """Write to the terminal; where Textual asks for its keyboard protocol, ask for event types as well."""

@@ -13,7 +13,7 @@ import msgspec
 from msgspec import Meta, Struct
 
 from groundstation.errors import InputError
-from sim.scenario import error_sentence, not_finite
+from sim.scenario import error_sentence, unusable
 
 Gain = Annotated[float, Meta(gt=0, le=1_000)]
 Limit = Annotated[float, Meta(gt=0, le=1_000)]
@@ -315,10 +315,10 @@ def load_settings(path: Path | None) -> Settings:
         tables = tomllib.loads(file.read_text(encoding="utf-8"))
     except OSError as error:
         raise ConfigError(f"{file}: cannot be read ({error.strerror}); check the path.") from error
-    except (UnicodeDecodeError, tomllib.TOMLDecodeError, RecursionError) as error:
+    except (ValueError, RecursionError) as error:
         raise ConfigError(f"{file}: is not valid TOML: {error}.") from error
-    if where := not_finite(tables):
-        raise ConfigError(f"{file}: {where}: is not a finite number; give a plain number.")
+    if why := unusable(tables):
+        raise ConfigError(f"{file}: {why}.")
     try:
         return msgspec.convert(tables, Settings, strict=True)
     except msgspec.ValidationError as error:

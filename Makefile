@@ -22,11 +22,14 @@ fly: .venv/.synced ## start a training flight on the simulated vehicle
 school: .venv/.synced ## learn to fly: mission by mission, with a coach
 	@$(BIN)/groundstation school
 
-# What runs real processes in real time runs by itself, one after the other. What fails there is flown once more before
-# it counts: a machine that others use, too, takes the processor away for a second now and then.
-test: check .venv/.synced ## run every check and every test
+# What runs real processes in real time runs by itself, one after the other, and what fails there is flown once more
+# before it counts: a machine that others use, too, takes the processor away for a second now and then. With
+# processors to spare: make test FLIGHTS=2.
+FLIGHTS ?= 0
+test: check ## run every check and every test
 	@$(BIN)/pytest --numprocesses auto --dist loadfile -m "not flight"
-	@$(BIN)/pytest -m flight || $(BIN)/pytest -m flight --last-failed
+	@$(BIN)/pytest --numprocesses $(FLIGHTS) --dist loadfile --no-loadscope-reorder -m flight \
+		|| $(BIN)/pytest -m flight --last-failed
 
 coverage: .venv/.synced ## run every test and print which lines no test reached
 	@$(BIN)/pytest --numprocesses auto --dist loadfile -m "not flight" --cov --cov-report=

@@ -8,6 +8,7 @@ commands at random. What leaves the link is read by pymavlink.
 
 from __future__ import annotations
 
+import contextlib
 import math
 import random
 import select
@@ -151,7 +152,7 @@ class Siege:
         end = self.heard.frames + frames
         while self.heard.frames < end:
             for _ in range(_BURST):
-                self._socket.sendall(next(self._hostile))
+                self._send(next(self._hostile))
             self.heard.frames += _BURST
             self._operate()
             self._turn()
@@ -202,18 +203,31 @@ class Siege:
 
     def _turn(self) -> None:
         """Let the vehicle say and hear its own, and look at all that came."""
-        if self._process.poll() is not None:
-            raise BrokenError(f"the link ended: {self._complaints.read_text(errors='replace')[-600:]}")
         vehicle = self._vehicle
         for data in vehicle.spoken():
-            self._socket.sendall(data)
+            self._send(data)
         while select.select([self._socket], [], [], 0.0)[0]:
             data = self._socket.recv(65536)
             if not data:
-                raise BrokenError("the link hung up")
+                raise self._ended()
             vehicle.endpoint.receive(data, whole=False)
             self._look_at(data)
         self._look_at_the_bus()
+
+    def _send(self, data: bytes) -> None:
+        try:
+            self._socket.sendall(data)
+        except OSError as error:
+            raise self._ended() from error
+
+    def _ended(self) -> BrokenError:
+        """Say how the link ended, or that it hung up."""
+        with contextlib.suppress(subprocess.TimeoutExpired):
+            self._process.wait(3.0)
+        said = self._complaints.read_text(errors="replace")[-3000:]
+        return BrokenError(
+            f"the link is gone ({self._process.poll()}) after {self.heard.frames} frames: {said}"
+        )
 
     def _look_at(self, data: bytes) -> None:
         # A command is sent again for a while; what was confirmed may leave a little later on a loaded machine.

@@ -24,7 +24,7 @@ from bench import gauges
 from bench.rig import Hand, Program, Tap, vehicle
 from groundstation.messages import CommandKind, FlightMode, Health, Phase
 
-FULL_S, SHORT_S = 1800.0, 150.0
+FULL_S, SHORT_S = 1800.0, 300.0
 GROWTH_BAR_MB, TICKS_BAR = 1.0, 0.99
 # Caches fill, pages of the screen are made for the first time.
 _WARM_UP = 0.2

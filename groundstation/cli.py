@@ -6,6 +6,7 @@ Nothing heavy is imported before it is needed: `--help` must answer at once.
 from __future__ import annotations
 
 import argparse
+import errno
 import importlib
 import os
 import sys
@@ -15,6 +16,7 @@ from typing import NoReturn, cast
 
 from groundstation import __version__, fly_options
 from groundstation import excite_options as excite
+from groundstation import preflight_options as preflight
 from groundstation import school_options as school
 from groundstation.devices import options as devices
 from groundstation.errors import InputError
@@ -31,11 +33,13 @@ from groundstation.terminal import has_screen
 from groundstation.training import options as missions
 
 PROGRAM = "groundstation"
-EXIT_BAD_INPUT = 2
+EXIT_FAILED, EXIT_BAD_INPUT = 1, 2
+_NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS)
 # The commands besides flying. Each is a module with its HELP, DESCRIPTION and EXAMPLES, `fill`, which adds its
 # options to a parser, and RUN, the function that does it, as "module:function".
 _COMMANDS: dict[str, ModuleType] = {
     "school": school,
+    "preflight": preflight,
     "review": review,
     "report": report,
     "replay": replay,
@@ -58,14 +62,18 @@ examples:
   groundstation --sim --headless --mission paper --json      let the scripted hand fly it
   groundstation --connect udpin://0.0.0.0:14540              fly a real PX4 vehicle
   groundstation --connect serial:///dev/ttyUSB0:57600        the same through a radio
+  groundstation preflight --connect udpin://0.0.0.0:14540    every check before a flight, with an exit code
   groundstation review                                       look at the last flight
   groundstation report                                       a page on the last flight, to mail
   groundstation replay                                       the last flight's hand through today's pilot
+  groundstation export --to mcap                             the last flight for Foxglove
+  groundstation excite --sim                                 fly what identification needs
   groundstation identify FLIGHT.rrd                          the vehicle's dynamic model out of a flight
   groundstation evaluate --delay 0,0.1,0.3                   compare controllers over hundreds of virtual flights
   groundstation missions list                                what there is to fly
   groundstation instruct                                     wind, delay and failures while a trainee flies
   groundstation progress                                     how you come along, and what to fly next
+  groundstation devices                                      which haptic devices are there
 
 exit codes: 0 done, or the mission's criteria hold; 1 they do not, or a process died; 2 bad input
 """
@@ -100,16 +108,28 @@ def build_parser() -> argparse.ArgumentParser:
         )
         options.fill(command)
     completion = commands.add_parser(
-        "completion", help="print a shell's completion script", description=_COMPLETION, formatter_class=_RAW
+        "completion",
+        help="print a shell's completion script",
+        description=_COMPLETION,
+        epilog=_COMPLETION_EXAMPLES,
+        formatter_class=_RAW,
     )
-    completion.add_argument("shell", choices=("bash", "zsh", "tcsh"))
+    completion.add_argument(
+        "shell", metavar="SHELL", choices=("bash", "zsh", "tcsh"), help="bash, zsh or tcsh"
+    )
     return parser
 
 
 _RAW = argparse.RawDescriptionHelpFormatter
 _COMPLETION = """\
-Print a completion script. For bash:
-  groundstation completion bash > ~/.local/share/bash-completion/completions/groundstation"""
+Print a shell's completion script: commands, options, and what they take, such as missions, airframes, devices
+and recordings. It holds their names, and starts no Python: print it again after an update."""
+_COMPLETION_EXAMPLES = """\
+examples:
+  eval "$(groundstation completion bash)"                    in this shell only; zsh likewise
+  groundstation completion bash > ~/.local/share/bash-completion/completions/groundstation
+  groundstation completion zsh > ~/.zfunc/_groundstation     with ~/.zfunc in fpath
+"""
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
@@ -118,6 +138,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
     asked = parser.parse_args(arguments)
     try:
         code = _dispatch(parser, asked)
+        # What is still to be written is written here, where somebody can say that there is no room for it.
+        sys.stdout.flush()
     except InputError as error:
         print(shown(f"{PROGRAM}: {error}"), file=sys.stderr)
         code = EXIT_BAD_INPUT
@@ -127,14 +149,27 @@ def main(arguments: Sequence[str] | None = None) -> None:
         # Whoever read our output has gone (`| head`); that is no error of ours.
         sys.stderr.close()
         code = 0
+    except OSError as error:
+        if error.errno not in _NO_ROOM:
+            raise
+        print(f"{PROGRAM}: {_full(error)}", file=sys.stderr)
+        code = EXIT_FAILED
     sys.exit(code)
+
+
+def _full(error: OSError) -> str:
+    if error.filename:
+        return f"{error.filename}: cannot be written ({error.strerror}); free the disk, or write elsewhere."
+    # What Python still holds for it would fail once more at exit.
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    return f"what was asked for cannot be written ({error.strerror}); free the disk, or let the output go elsewhere."
 
 
 def _dispatch(parser: argparse.ArgumentParser, asked: argparse.Namespace) -> int:
     if asked.command == "completion":
-        import shtab
+        from groundstation import completion
 
-        print(shtab.complete(parser, shell=asked.shell))
+        print(completion.script(parser, asked.shell))
         return 0
     if asked.command:
         module, _, function = _COMMANDS[asked.command].RUN.partition(":")

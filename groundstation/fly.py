@@ -136,23 +136,25 @@ def plan(asked: argparse.Namespace) -> Run:
 
 
 def accompanied(run: Run, asked: argparse.Namespace) -> Run:
-    """Return a run with the ghost that is followed, and with guidance as strong as the pilot needs it.
+    """Return a run with the ghost that is followed, and with guidance and advice as the pilot's skill needs them.
 
     By itself it guides only a hand that trains on the simulated vehicle, and a scripted hand needs neither.
     """
     if run.mission is None:
         return run
-    from groundstation.progress.company import flown_by, ghost_of, guidance_of
+    from groundstation.progress.company import flown_by, ghost_of, guidance_of, skill_of
     from groundstation.training.curriculum import lessons
 
     flights, best = flown_by(run.pilot, run.mission, asked.logs, _complain)
+    curriculum = [each.mission for each in lessons()]
     wanted = run.settings.training.guidance if asked.guidance is None else asked.guidance
     if wanted == "auto":
         trains = run.simulated and not asked.headless
-        wanted = guidance_of(run.mission, flights, [each.mission for each in lessons()]) if trains else 0.0
+        wanted = guidance_of(run.mission, flights, curriculum) if trains else 0.0
     asked_ghost = "off" if asked.headless and not asked.ghost else asked.ghost
     ghost = ghost_of(asked_ghost, run.mission, Path(run.mission_path), best)
-    return msgspec.structs.replace(run, ghost=ghost, guidance=wanted)
+    skill = skill_of(run.mission, flights, curriculum)
+    return msgspec.structs.replace(run, ghost=ghost, guidance=wanted, skill=skill)
 
 
 def _complain(words: str) -> None:
@@ -161,6 +163,9 @@ def _complain(words: str) -> None:
 
 def _check(asked: argparse.Namespace) -> None:
     """Refuse combinations that mean nothing, before anything starts."""
+    if (folder := os.environ.get("TMPDIR")) and not Path(folder).is_dir():
+        # MAVSDK would end the link by it.
+        raise InputError(f"TMPDIR: {folder}: there is no such folder; make it, or unset TMPDIR.")
     if asked.headless and not asked.mission:
         raise InputError("--headless needs a --mission to fly; see 'groundstation missions list'.")
     if asked.headless and asked.device and not asked.device.startswith(_EMULATED):

@@ -25,6 +25,7 @@ REASON_TEXT = 160
 NAME_TEXT = 49
 FIRMWARE_TEXT = 24
 PARAMETER_TEXT = 17
+SCORE_TEXT = 256
 PART_TEXT = 16
 HAPPENING_TEXT = 200
 # Sectors of the ring in `Ranges`, as many as MAVLink's OBSTACLE_DISTANCE has room for.
@@ -142,7 +143,7 @@ class Severity(IntEnum):
 
 
 class Health(IntFlag):
-    """What the vehicle's estimator and sensors say of themselves."""
+    """What the vehicle's estimator, sensors and receiver say of themselves."""
 
     GYRO = 1
     ACCELEROMETER = 2
@@ -151,6 +152,7 @@ class Health(IntFlag):
     GLOBAL_POSITION = 16
     HOME = 32
     ARMABLE = 64
+    TRANSMITTER = 128
 
 
 class Handle(Record):
@@ -668,7 +670,7 @@ class DeviceReport(Record):
 
 
 class MissionProgress(Record):
-    """How far the mission is: the stage in words, the leg of the route, the distance to its end."""
+    """How far the mission is: the stage in words, the leg of the route, the distance to its end, the score so far."""
 
     stage: bytes
     leg: int
@@ -676,6 +678,7 @@ class MissionProgress(Record):
     target_distance: float
     clearance: float
     collisions: int
+    score: bytes
     _fields_ = (
         ("t", _F64),
         ("stage", ctypes.c_char * 48),
@@ -684,6 +687,7 @@ class MissionProgress(Record):
         ("target_distance", _F64),
         ("clearance", _F64),
         ("collisions", _U32),
+        ("score", ctypes.c_char * SCORE_TEXT),
     )
 
 

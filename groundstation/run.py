@@ -42,6 +42,7 @@ class Run(Struct, frozen=True):
         signing_key: The file with the key for MAVLink signing, or "". The key itself is nowhere but there.
         ghost: The flight that is followed on map and in the viewer, or None.
         guidance: How strongly the hand is guided towards the mission's way, 0 to 1.
+        skill: What the pilot can of what the mission trains, 0 to 1: the coach says the less.
     """
 
     run_id: str
@@ -64,6 +65,7 @@ class Run(Struct, frozen=True):
     signing_key: str = ""
     ghost: Track | None = None
     guidance: float = 0.0
+    skill: float = 0.0
 
     @property
     def hand(self) -> Path | None:

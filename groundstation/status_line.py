@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import os
 import time
 from collections.abc import Callable
 from types import TracebackType
 from typing import Self, TextIO
+
+from groundstation.terminal import can_redraw
 
 _CLEAR = "\r\x1b[K"
 # More often nobody reads it, s.
@@ -20,12 +23,12 @@ class StatusLine:
         clock: Monotonic seconds.
 
     Attributes:
-        live: It is a terminal, where the line changes.
+        live: It is a terminal on which a line can change.
     """
 
     def __init__(self, out: TextIO, clock: Callable[[], float] = time.monotonic) -> None:
         self._out, self._clock = out, clock
-        self.live = out.isatty()
+        self.live = out.isatty() and can_redraw(os.environ)
         self._next = -float("inf")
 
     def __enter__(self) -> Self:

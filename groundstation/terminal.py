@@ -17,7 +17,14 @@ _GIVE_BACK = (
 
 def has_screen(environment: Mapping[str, str]) -> bool:
     """Say whether a screen can be shown: on a terminal, or where Textual was given another way, as to a browser."""
-    return "TEXTUAL_DRIVER" in environment or (sys.stdin.isatty() and sys.stdout.isatty())
+    if "TEXTUAL_DRIVER" in environment:
+        return True
+    return sys.stdin.isatty() and sys.stdout.isatty() and can_redraw(environment)
+
+
+def can_redraw(environment: Mapping[str, str]) -> bool:
+    """Say whether a terminal can write over what it shows; an editor's shell window or a teleprinter cannot."""
+    return environment.get("TERM") != "dumb"
 
 
 def terminal_path() -> str:

@@ -1,8 +1,10 @@
 """The command line as a user meets it: help at once, one sentence and exit 2 for what is wrong."""
 
+import os
 import resource
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
@@ -96,6 +98,24 @@ def test_nothing_asked_prints_help_and_is_bad_input():
         (["--connect", CONNECT, "--headless", "--mission", "ODD", "--confirm-real"], "no such airframe"),
         (["review", "/nowhere.rrd"], "/nowhere.rrd"),
         (["missions", "check", "/nowhere.toml"], "cannot be read"),
+        (["missions", "show", "FOLDER"], "no such mission"),
+        (["report", ""], "is a folder"),
+        (["export", "--to", "csv", "FOLDER"], "is a folder"),
+        (["replay", "EMPTY"], "is not a Rerun recording"),
+        (["identify", "/nowhere.csv"], "check the path"),
+        (["identify", "FOLDER"], "is none of"),
+        (["progress", "--logs", "EMPTY"], "is no folder"),
+        (["progress", "certificate", "Nobody"], "has no flights"),
+        (["evaluate", "--seeds", "0"], "--seeds 0"),
+        (["evaluate", "--mission", "free"], "no target"),
+        (["devices", "test", "theremin"], "no such haptic device"),
+        (["devices", "emulate", "theremin"], "no such emulator"),
+        (["excite", "--sim", "--band", "1,0.1"], "must rise"),
+        (["excite"], "say which"),
+        (["instruct", "--run", "nobody-flies-this", "status"], "flight"),
+        (["school"], "needs a terminal"),
+        (["completion", "fish"], "invalid choice"),
+        (["--sim", "--headless", "--mission", "hover", "--config", "BINARY"], "not UTF-8"),
     ],
 )
 def test_what_is_wrong_gets_one_sentence_and_exit_2(tmp_path, arguments, words):
@@ -103,12 +123,56 @@ def test_what_is_wrong_gets_one_sentence_and_exit_2(tmp_path, arguments, words):
     odd.write_text('schema = 1\nname = "odd"\ntitle = "t"\n[vehicle]\nairframe = "zeppelin"\n')
     place = tmp_path / "place.toml"
     place.write_text('[mapping]\nmode = "position"\n')
-    named = {"ODD": str(odd), "PLACE": str(place)}
-    done = run(*(named.get(word, word) for word in arguments), cwd=tmp_path)
+    folder, empty, binary = tmp_path / "folder", tmp_path / "empty.rrd", tmp_path / "binary.toml"
+    folder.mkdir()
+    empty.touch()
+    binary.write_bytes(b"\xff\xfe")
+    named = {"ODD": odd, "PLACE": place, "FOLDER": folder, "EMPTY": empty, "BINARY": binary}
+    done = run(*(str(named.get(word, word)) for word in arguments), cwd=tmp_path)
     assert done.returncode == 2, done
     assert words in done.stderr
     assert "Traceback" not in done.stderr
+    # What is begun is told without a terminal, too; then comes the sentence.
+    told = [line for line in done.stderr.strip().splitlines() if not line.startswith("reading ")]
+    assert len(told) == 1
+
+
+@pytest.mark.parametrize(
+    "arguments", [["missions", "list"], ["progress"], ["completion", "bash"], ["devices"]]
+)
+def test_no_room_for_the_output_is_said_in_one_sentence(tmp_path, arguments):
+    command = [sys.executable, "-m", "groundstation.cli", *arguments]
+    with Path("/dev/full").open("w") as full:
+        done = subprocess.run(
+            command, stdout=full, stderr=subprocess.PIPE, text=True, cwd=tmp_path, check=False
+        )
+    assert done.returncode == 1
+    assert "No space left on device" in done.stderr
     assert len(done.stderr.strip().splitlines()) == 1
+
+
+def test_a_temporary_folder_that_is_gone_is_told_before_anything_starts(tmp_path):
+    done = run(
+        "--sim", "--headless", "--mission", "hover", cwd=tmp_path, env=os.environ | {"TMPDIR": "/nowhere"}
+    )
+    assert done.returncode == 2
+    assert "unset TMPDIR" in done.stderr
+
+
+def test_without_a_home_what_needs_none_goes_on(tmp_path):
+    for arguments in (["missions", "list"], ["progress"], ["devices", "list"]):
+        for environment in ({}, {"HOME": "/dev/null"}):
+            done = run(*arguments, cwd=tmp_path, env=environment)
+            assert (done.returncode, done.stderr) == (0, ""), arguments
+
+
+@pytest.mark.parametrize(("term", "code"), [("dumb", False), ("xterm-256color", True)])
+def test_a_terminal_that_cannot_redraw_is_none(monkeypatch, term, code):
+    from groundstation import terminal
+
+    monkeypatch.setattr("sys.stdin.isatty", lambda: True, raising=False)
+    monkeypatch.setattr("sys.stdout.isatty", lambda: True, raising=False)
+    assert terminal.has_screen({"TERM": term}) is code
 
 
 def test_missions_list_and_check(capsys):

@@ -41,29 +41,29 @@ def push(payload: bytes) -> float:
     return math.hypot(*struct.unpack_from("<3f", payload, 12))
 
 
-def test_a_device_pulled_out_in_flight_ends_in_hold_and_only_the_operator_engages_again(tmp_path):
+@pytest.mark.parametrize("device", ["falcon", "inverse3", "two-diy"])
+def test_a_device_pulled_out_in_flight_ends_in_hold_and_only_the_operator_engages_again(tmp_path, device):
     mission = tmp_path / "long.toml"
     mission.write_text(LONG)
     socket = str(tmp_path / "hand.sock")
     hand, tap = Hand(socket), Tap()
     with vehicle(tap.vehicle_port, "--mission", str(mission)):
         program = Program(
-            "--connect", f"udpout://127.0.0.1:{tap.program_port}", "--device", f"emulated:falcon@{socket}",
+            "--connect", f"udpout://127.0.0.1:{tap.program_port}", "--device", f"emulated:{device}@{socket}",
             "--mission", str(mission), "--logs", str(tmp_path / "logs"),
         )  # fmt: skip
         try:
-            program.until(lambda view: view.device and view.device.homed, 20, "the Falcon is homed")
+            view = program.until(lambda view: view.device and view.device.homed, 20, "the device is homed")
             program.engage()
-            hand.put((0.03, 0.0, 0.0))
+            hand.put((0.6 * view.device.workspace, 0.0, 0.0))
             until(lambda: speed(tap) > 0.5, 10, "the vehicle follows the hand")
             pulled = time.monotonic()
             os.kill(emulator_of(program), signal.SIGKILL)
             program.until(lambda view: view.pilot.phase == Phase.DISENGAGED, 5, "uncoupled")
             until(lambda: holds(tap), 6, "the vehicle holds")
             moving = [t - pulled for t, payload in tap.setpoints if t > pulled and push(payload) > 0.05]
-            # What is measured is told, and judged only as far as a shared machine allows.
             print(f"last moving setpoint {1e3 * max(moving, default=0.0):.0f} ms after the cable was pulled")
-            assert max(moving, default=0.0) < 0.5
+            assert max(moving, default=0.0) < 0.1
             hand.put((0.0, 0.0, 0.0))
             program.until(lambda view: view.device.present and view.device.homed, 20, "plugged in again")
             time.sleep(0.5)

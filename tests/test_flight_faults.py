@@ -36,7 +36,7 @@ from pymavlink import mavutil
 from pymavlink.dialects.v20 import common as mavlink
 
 from drivers import stick
-from groundstation.messages import Phase
+from groundstation.messages import CommandKind, Phase, Severity
 from groundstation.recording import schema
 from groundstation.review.flight import Flight
 
@@ -152,10 +152,15 @@ def test_a_frozen_link_lets_nothing_out_and_nothing_old_when_it_wakes(flight):
         assert lost_offboard(flight, stopped) < 1.2 + SLACK_S
         until(lambda: is_safe(flight.tap), 6, "the vehicle is safe by its own failsafe")
         assert max(t for t, _ in flight.tap.setpoints) - stopped < SLACK_S
+        asked_t = time.monotonic()
+        flight.program.console.command(CommandKind.KILL)
+        time.sleep(2.1)
     finally:
         flight.tap.setpoints.clear()
         flight.signal(signal.SIGCONT, "link")
+    flight.told("the link stood still", asked_t)
     flight.stays_uncoupled(2.0)
+    assert flight.program.console.snapshot().status.armed
 
 
 def test_a_link_whose_interpreter_is_held_for_8_s_lets_nothing_out(flight):
@@ -297,6 +302,11 @@ def test_a_viewer_that_hangs_and_a_disk_that_fills_change_nothing_in_flight_and_
         resource.prlimit(pid, resource.RLIMIT_FSIZE, (4096, 4096))
     flight.told("This flight is no longer recorded", began, 20)
     flight.told("MAVLink log", began)
+    alarms = b"".join(
+        each.text for each in flight.program.console.snapshot().events if each.severity == Severity.ALARM
+    )
+    assert b"no longer recorded" in alarms
+    assert b"MAVLink log" in alarms
     assert max(pace(flight, 1.0)) < STALE_S
     assert flight.program.console.snapshot().pilot.phase == Phase.ENGAGED
     assert speed(flight.tap) > 0.5
@@ -310,6 +320,8 @@ def test_a_viewer_that_hangs_and_a_disk_that_fills_change_nothing_in_flight_and_
 def test_a_killed_process_ends_in_a_vehicle_that_is_safe_and_is_told(flight, role):
     program = flight.program
     killed, wall = flight.signal(signal.SIGKILL, role), time.time()
+    if role == "link":
+        assert lost_offboard(flight, killed) < 1.2 + SLACK_S
     until(lambda: is_safe(flight.tap), 6, "the vehicle is safe")
     assert max(t for t, _ in flight.tap.setpoints) - killed < STALE_S + SLACK_S
     flight.told(f"The {role} process has died", killed)

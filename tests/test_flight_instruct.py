@@ -10,6 +10,7 @@ import pytest
 
 from bench.rig import ROOT, Program, free_port, vehicle
 from groundstation.messages import CommandKind, FlightMode, Phase
+from groundstation.progress.importing import flights_in
 from groundstation.recording import lanes
 from groundstation.review.flight import Flight
 
@@ -114,6 +115,8 @@ def test_what_is_let_happen_happens_to_the_vehicle_and_is_recorded(tmp_path):
     assert ("mission", "Wind 2.0 m/s from the south.") in lines
     assert ("instructor", "Haptic device lost for 4 s.") in lines
     assert ("instructor", "All taken back.") in lines
+    # Whoever reads progress from it knows that an instructor had a hand in it.
+    assert [each.instructed for each, _ in flights_in(path)] == [True]
     checked = groundstation("replay", path, "--check", "--json")
     assert (checked.returncode, json.loads(checked.stdout)["identical"]) == (0, True), checked.stderr
 

@@ -3,7 +3,7 @@
 import json
 
 import pytest
-from test_flight import headless
+from flight_support import headless
 
 pytestmark = [pytest.mark.flight, pytest.mark.timeout(240)]
 

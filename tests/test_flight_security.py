@@ -8,6 +8,7 @@ import pytest
 from flight_support import Stage, another_station, asked, hears
 from pymavlink.dialects.v20 import common as mavlink
 
+from bench.fuzz_link import besieged
 from bench.rig import Program
 from groundstation.messages import Phase
 from groundstation.run_folder import run_folder
@@ -130,3 +131,11 @@ def test_a_simulated_flight_waits_at_the_loopback_address_only(tmp_path):
         assert {name: address for name, address in waiting.items() if address != loopback} == {}
     finally:
         program.close()
+
+
+def test_a_link_under_fire_lives_and_lets_nothing_out_that_is_not_meant():
+    """The short form of `python -m bench fuzz_link`, which raises where it finds something."""
+    heard = besieged(5_000, seed=1)
+    assert heard.frames >= 5_000
+    assert heard.states > 20
+    assert heard.commands > 20

@@ -16,6 +16,7 @@ from groundstation.instruct.telling import line, status
 from groundstation.messages import MissionProgress, Phase
 from groundstation.run import write_run
 from groundstation.run_folder import Stay, sweep
+from groundstation.training.mission import find_mission, load_mission
 
 
 def flights(tmp_path):
@@ -101,6 +102,16 @@ def test_how_a_trainee_is_doing(tmp_path):
     assert told["mission"] == "on the way, point 2 of 4, 7.0 m to the target, clearance 1.2 m, 1 collision"
     assert told["link"] == "round trip 300 ms, 10 % lost"
     assert told["in force"] == "wind"
+    assert told["score"] == "none yet"
+
+
+def test_the_score_so_far_and_what_is_asked_for_are_told(tmp_path):
+    view = flying()
+    view.progress.score = b"12 of 100 so far: time 3/11, path 9/22"
+    run = msgspec.structs.replace(a_run(tmp_path / "flight"), mission=load_mission(find_mission("hover")))
+    told = dict(status(run, view, "nothing"))
+    assert told["score"] == "12 of 100 so far: time 3/11, path 9/22"
+    assert "from take-off to landing" in told["goal"]
 
 
 def test_what_is_silent_or_old_is_said_to_be(tmp_path):

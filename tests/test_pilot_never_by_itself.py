@@ -15,6 +15,8 @@ from groundstation.messages import CommandKind, FlightMode, Phase, Stream
 
 SETTINGS = Settings(buttons=Buttons(enable=6, panic=7))
 HELD = 1 << 6
+# What is chosen of how the hand leads, on or off, this or that: none of it is an act to engage.
+CHOOSING = [CommandKind.MAPPING, CommandKind.FINE, CommandKind.CLUTCH, CommandKind.PRESET, CommandKind.CUES]
 # What can be wrong, as a field of the bench or of what the vehicle tells, with its good and its bad value.
 FAULTS = {
     "stick gone": ("bench", "stick", (0.0, 0.0, 0.0), None),
@@ -87,6 +89,24 @@ class NeverByItself(RuleBasedStateMachine):
         self.bench.tick()
         self.asked = False
 
+    @rule(
+        kind=st.sampled_from([*CHOOSING, CommandKind.SETTINGS, CommandKind.PARAMETERS]),
+        value=st.integers(0, 1),
+    )
+    def choose(self, kind: CommandKind, value: int) -> None:
+        """Clutch and mode change, as often as one likes."""
+        self.bench.world.command(kind, self.bench.now, value)
+        self.bench.run(0.02)
+
+    @rule(keys=st.integers(1, 5))
+    def wake_to_keys_pressed_meanwhile(self, keys: int) -> None:
+        """A servo that stood still finds what was pressed while nothing happened: that was not meant for now."""
+        for _ in range(keys):
+            self.bench.world.command(CommandKind.ENGAGE, self.bench.now)
+        self.bench.now += 5.0
+        self.bench.tick()
+        self.asked = False
+
     @rule(name=st.sampled_from(sorted(FAULTS)))
     def go_wrong(self, name: str) -> None:
         _, field, _, _ = FAULTS[name]
@@ -114,9 +134,11 @@ class NeverByItself(RuleBasedStateMachine):
 
     @rule(mode=st.sampled_from([FlightMode.POSITION, FlightMode.RETURN, FlightMode.MANUAL]))
     def be_taken(self, mode: FlightMode) -> None:
+        # Who engages while another flies in that mode has it from them; that they go on in it takes nothing.
+        already = self.bench.world.status.mode == mode
         self.bench.world.confirm(mode, Stream.ENDED)
         self.bench.run(0.1)
-        self.asked = False
+        self.asked = self.asked and already
 
     @rule()
     def link_confirms(self) -> None:

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import datetime
 
+import msgspec
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from groundstation.progress.certificate import certificate_of
 from groundstation.progress.flown import Flown
+from groundstation.progress.overview import table
 from groundstation.progress.schedule import WAITS, repetition_of
 from groundstation.progress.skills import NOT_PASSED, STUCK, WEIGHT, standing_of
 from groundstation.training.curriculum import lessons
@@ -154,3 +157,29 @@ def test_the_shipped_curriculum_is_learned_to_its_end_by_following_the_advice():
         advice = standing_of(course, history, TODAY).next
         history.append(flown(advice.mission))
     assert {each.mission for each in history} == judged
+
+
+def test_what_an_instructor_had_a_hand_in_is_practice_and_decides_nothing():
+    practice = msgspec.structs.replace(flown("hover", 99.0), instructed=True)
+    failed = msgspec.structs.replace(flown("hover", 5.0, passed=False), instructed=True)
+    standing = after(practice)
+    assert standing.next == ("hover", "the first of all")
+    assert (standing.levels, standing.passed) == ({}, 0)
+    assert (standing.records["hover"].flights, standing.records["hover"].instructed) == (1, 1)
+    # Nor does it spoil what was passed alone.
+    alone, both = after(flown("hover")), after(flown("hover"), failed)
+    assert both.levels == alone.levels
+    assert both.records["hover"].repetition == alone.records["hover"].repetition
+    text = table("ann", both, [flown("hover"), failed], TODAY)
+    assert "2 (1i)" in text
+    assert "an instructor let something happen" in text
+    assert "(1i)" not in table("ann", alone, [flown("hover")], TODAY)
+
+
+def test_the_certificate_tells_what_was_practice_and_passes_nothing_by_it():
+    practice = msgspec.structs.replace(flown("hover", 99.0), instructed=True)
+    report = certificate_of([practice], COURSE, TODAY)
+    found = {finding.what: finding.found for finding in report.findings}
+    assert found["missions passed"].startswith("0 of")
+    assert found["of them with an instructor's doing, as practice"] == "1"
+    assert report.tables[0].rows == []

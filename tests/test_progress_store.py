@@ -16,7 +16,7 @@ from groundstation.progress.company import flown_by
 from groundstation.progress.flown import Flown
 from groundstation.progress.opening import FILE, store_in
 from groundstation.progress.store import Store
-from groundstation.progress.tables import VERSION
+from groundstation.progress.tables import STEPS, VERSION
 from groundstation.training.measures import Track
 from groundstation.training.mission import find_mission, load_mission
 from groundstation.training.reference import digest_of
@@ -274,3 +274,22 @@ def test_the_ghost_is_the_best_flight_of_the_mission_as_it_is(path, tmp_path):
         store.add(now, TRACK)
     flights, best = flown_by("ann", mission, tmp_path, told.append)
     assert (len(flights), best, told) == (2, TRACK, [])
+
+
+def test_a_file_of_the_first_version_keeps_its_flights(path):
+    """What was kept before an instructor's doing was known counts as flown alone."""
+    first = sqlite3.connect(path, isolation_level=None)
+    first.executescript(STEPS[0])
+    first.execute("INSERT INTO pilots VALUES (1, 'Ann')")
+    first.execute(
+        "INSERT INTO flights VALUES (1, 1, '2026-11-01T10:00:00+00:00', 1, 'hover', 'd1', 0, 1, '', 20.0, 1, 80.0,"
+        " '{}', '{}', 'a.rrd', '0.1.0')"
+    )
+    first.execute("PRAGMA user_version = 1")
+    first.close()
+    with Store(path) as store:
+        (kept,) = store.flights()
+        assert (kept.pilot, kept.points, kept.instructed) == ("Ann", 80.0, False)
+        store.add(flown(instructed=True, points=99.0, passed=True))
+        assert [each.instructed for each in store.flights()] == [False, True]
+        assert store.best("Ann", "hover").points == 80.0

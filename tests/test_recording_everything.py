@@ -20,13 +20,14 @@ _KNOWN = {
 }  # fmt: skip
 
 
-# The rows of the handle are the ticks, counted on from the last of `/servo/tick`.
-_COUNTED = {("handle", "tick")}
+# The rows of the handle are the ticks, counted on from the last of `/servo/tick`; the score so far is worked out anew
+# from what is recorded.
+_NOT_KEPT = {("handle", "tick"), ("mission_progress", "score")}
 
 
 def fields() -> list[tuple[Topic, str]]:
     every = [(topic, name) for topic in TOPICS for name, *_ in topic.record._fields_ if name != "t"]
-    return [(topic, name) for topic, name in every if (topic.name, name) not in _COUNTED]
+    return [(topic, name) for topic, name in every if (topic.name, name) not in _NOT_KEPT]
 
 
 def a_record(kind: type[Record], t: float, /, **changed: object) -> Record:

@@ -61,7 +61,7 @@ def vehicle(port, tmp_path):
     mission = tmp_path / "mission.toml"
     mission.write_text(MISSION, encoding="utf-8")
     url = f"udpout://127.0.0.1:{port}"
-    options = ("--connect", url, "--mission", str(mission), "--quiet", "--with-parent")
+    options = ("--connect", url, "--mission", str(mission), "--quiet", "--with-parent", "--speed", "3")
     process = subprocess.Popen([sys.executable, "-m", "sim", *options])
     yield process
     process.terminate()

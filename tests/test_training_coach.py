@@ -212,3 +212,18 @@ def test_who_steers_badly_keeps_nearer_to_the_way_where_the_hand_is_guided(seed)
         flown.fly(60.0)
         errors.append(flown.path_error)
     assert errors[1] < 0.9 * errors[0]
+
+
+def test_who_can_more_is_left_in_quiet_for_longer():
+    def pause(skill: float) -> float:
+        """Return how long after the first hint another habit gets one, s."""
+        coach, told = Coach(skill=skill), []
+        for step in range(2000):
+            done = {"on_leash": True} if not told else {"clearance": 0.6, "closing": 1.2}
+            _, said = coach.look(FLYING._replace(t=step * STEP_S, **done))
+            if said is not None:
+                told.append(step * STEP_S)
+        return told[1] - told[0]
+
+    pauses = [pause(skill) for skill in (0.0, 0.5, 1.0)]
+    assert pauses == pytest.approx([QUIET_S, 2.0 * QUIET_S, 3.0 * QUIET_S], abs=2 * STEP_S)

@@ -13,7 +13,7 @@ from msgspec.structs import replace
 
 from groundstation.fly import accompanied
 from groundstation.fly_options import share
-from groundstation.progress.company import SKILLED, ghost_of, guidance_of
+from groundstation.progress.company import SKILLED, ghost_of, guidance_of, skill_of
 from groundstation.progress.flown import Flown
 from groundstation.progress.opening import store_in
 from groundstation.progress.store import Store
@@ -156,6 +156,14 @@ def test_guidance_is_whole_at_first_and_fades_with_skill():
     strengths = [guidance_of(mission, [flight(points)], []) for points in (0.0, 20.0, 40.0, SKILLED, 100.0)]
     assert strengths == pytest.approx([1.0, 0.75, 0.5, 0.0, 0.0])
     assert guidance_of(load_mission(find_mission("free")), [], []) == 0.0
+
+
+def test_the_coach_is_told_the_pilots_skill_in_what_is_flown():
+    hover, free = load_mission(find_mission("hover")), load_mission(find_mission("free"))
+    assert skill_of(hover, [], []) == skill_of(free, [], []) == 0.0
+    assert skill_of(hover, [flight(60.0)], []) == pytest.approx(0.6)
+    # A free flight is for nothing in particular: all that was trained counts.
+    assert skill_of(free, [flight(60.0)], [hover]) == pytest.approx(0.6)
 
 
 def asked(tmp_path, **other) -> argparse.Namespace:

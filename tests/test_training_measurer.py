@@ -77,7 +77,7 @@ def test_before_take_off_nothing_is_measured():
     measurer = Measurer(MISSION, RADIUS)
     measurer.hand(HandSight(0.0, True, (1.0, 0.0, 0.0), 1.0, (9.0, 0.0, 0.0)))
     measurer.vehicle(VehicleSight(0.1, (0.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0), False, False))
-    assert measurer.hand_rows == measurer.vehicle_rows == []
+    assert len(measurer.hand_rows) == len(measurer.vehicle_rows) == 0
     assert math.isnan(measurer.measures().time_s)
 
 

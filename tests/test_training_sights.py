@@ -11,13 +11,28 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from groundstation.bus import Bus
-from groundstation.messages import EVENT, HANDLE, PILOT_STATE, POINTS_LOST, VEHICLE_STATE, VEHICLE_STATUS
+from groundstation.messages import (
+    EVENT,
+    HANDLE,
+    INTERVENTION_ANSWER,
+    MISSION_PROGRESS,
+    PILOT_STATE,
+    POINTS_LOST,
+    VEHICLE_STATE,
+    VEHICLE_STATUS,
+    Intervention,
+)
 from groundstation.run_folder import new_run_id
+from groundstation.training.answering import answer_to
 from groundstation.training.attempts import Attempts
+from groundstation.training.events import GustNow
 from groundstation.training.follower import MissionFollower
+from groundstation.training.happening import packed
 from groundstation.training.judgement import judgement_of
 from groundstation.training.measures import Measures
+from groundstation.training.score import score_of
 from groundstation.training.sights import Sights
+from groundstation.training.telling import so_far
 
 RUN = canned_run()
 PAR = Measures(time_s=20.0, reached=1.0, rms_error_m=0.2)
@@ -111,6 +126,22 @@ def test_a_follower_sees_every_record_and_tells_where_points_were_lost(bus):
     assert follower.complete
 
 
+def test_a_follower_tells_the_score_as_it_grows(bus):
+    follower = MissionFollower(RUN.mission, bus, PAR)
+    progress = bus.subscriber(MISSION_PROGRESS)
+    publishers = [bus.publisher(topic) for topic in (VEHICLE_STATE, VEHICLE_STATUS, PILOT_STATE, HANDLE)]
+    flight = CannedFlight(RUN)
+    follower.look(flight.snapshot())
+    assert progress.newest().score == b""
+    for records in FLOWN[:200]:
+        flight.advance(STEP_S)
+        for publisher, record in zip(publishers, records, strict=True):
+            publisher.send(record)
+    follower.look(flight.snapshot())
+    measured = score_of(RUN.mission, follower.measurer.measures(), PAR)
+    assert progress.newest().score.decode() == so_far(measured)
+
+
 def test_a_follower_that_is_held_up_says_that_it_missed_something(bus):
     follower = MissionFollower(RUN.mission, bus, PAR)
     told = bus.subscriber(EVENT)
@@ -127,3 +158,24 @@ def test_a_follower_that_is_held_up_says_that_it_missed_something(bus):
         follower.look(CannedFlight(RUN).snapshot())
     assert not follower.complete
     assert ["Held up" in event.text.decode() for event in told.drain()] == [True]
+
+
+@pytest.mark.parametrize(
+    ("source", "refused", "marked"),
+    [(b"instructor", "", True), (b"instructor", "no such thing", False), (b"mission", "", False)],
+)
+def test_a_follower_knows_what_an_instructor_let_happen(bus, source, refused, marked):
+    follower = MissionFollower(RUN.mission, bus, PAR)
+    publishers = [bus.publisher(topic) for topic in (VEHICLE_STATE, VEHICLE_STATUS, PILOT_STATE, HANDLE)]
+    answers = bus.publisher(INTERVENTION_ANSWER)
+    for number, records in enumerate(FLOWN):
+        for publisher, record in zip(publishers, records, strict=True):
+            publisher.send(record)
+        if number == len(FLOWN) // 2:
+            asked = Intervention(t=records[0].t, number=1, source=source)
+            asked.happening = packed(GustNow(velocity=(4.0, 0.0, 0.0), duration_s=2.0))
+            answers.send(answer_to(asked, refused, records[0].t))
+        if number % 40 == 0:
+            follower.look(CannedFlight(RUN).snapshot())
+    follower.finish()
+    assert follower.attempts.judged.instructed is marked

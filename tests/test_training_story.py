@@ -10,6 +10,8 @@ from hypothesis import strategies as st
 from test_training_measurer import MISSION, STEP, flown
 
 from groundstation.training.attempts import Attempts
+from groundstation.training.events import GustNow, WindChange
+from groundstation.training.happening import Calm
 from groundstation.training.judgement import judgement_of
 from groundstation.training.measurer import HandSight, Measurer, VehicleSight
 from groundstation.training.measures import Measures
@@ -150,3 +152,26 @@ def test_a_clock(seconds, words):
 def test_trifles_are_not_told():
     moments = [Moment("time", 0.0, 0.0, lost, "", (0.0, 0.0, 0.0)) for lost in (3.0, 0.4)]
     assert worth_telling(moments) == moments[:1]
+
+
+def test_a_flight_that_an_instructor_had_a_hand_in_is_marked_and_the_next_as_far_as_it_lasts():
+    attempts = Attempts(MISSION, 0.2)
+
+    def fly(start: float) -> bool:
+        for row in range(100):
+            position, still = (0.0, 0.0, 1.0, 0.0), (0.0, 0.0, 0.0)
+            attempts.show(VehicleSight(start + row * STEP, position, still, True, True))
+        attempts.show(VehicleSight(start + 2.1, (0.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0), False, False))
+        return attempts.judged.instructed
+
+    assert not fly(0.0)
+    attempts.instruct(10.5, GustNow(velocity=(4.0, 0.0, 0.0), duration_s=2.0))
+    assert fly(10.0)
+    # A gust on the ground has passed by the next take-off; a wind has not, until it is taken back.
+    attempts.instruct(15.0, GustNow(velocity=(4.0, 0.0, 0.0), duration_s=2.0))
+    assert not fly(20.0)
+    attempts.instruct(25.0, WindChange(velocity=(4.0, 0.0, 0.0)))
+    assert fly(30.0)
+    assert fly(40.0)
+    attempts.instruct(45.0, Calm())
+    assert not fly(50.0)

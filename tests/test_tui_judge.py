@@ -13,6 +13,7 @@ from groundstation.tui import judge
 from groundstation.tui.acts import ACTS
 from groundstation.tui.alarms import Alarms
 from groundstation.tui.alerts import conditions
+from groundstation.tui.finding import DeviceWatch
 from groundstation.tui.frame import Frame
 from groundstation.tui.hand import CENTRED
 from groundstation.tui.hints import distance_to_target, next_step
@@ -126,6 +127,29 @@ def test_an_alarm_comes_before_a_warning_whatever_is_looked_at_first():
     severity, text = worst(frame(shown))
     assert severity is ALARM
     assert "device is gone" in text
+
+
+@pytest.mark.parametrize(
+    ("elapsed", "severity", "words"),
+    [(1.0, INFO, "Looking for the haptic device"), (12.0, ALARM, "No haptic device has been found")],
+)
+def test_a_device_that_was_never_there_is_looked_for_until_it_should_have_been_found(
+    elapsed, severity, words
+):
+    shown = flying(elapsed)
+    shown.device.present = 0
+    told = worst(replace(frame(shown), device_found=DeviceWatch().look(shown)))
+    assert told[0] is severity
+    assert words in told[1]
+
+
+def test_a_device_that_was_there_is_gone_at_once():
+    shown, watch = flying(1.0), DeviceWatch()
+    assert watch.look(shown)
+    shown.device.present = 0
+    assert worst(replace(frame(shown), device_found=watch.look(shown))) == (
+        ALARM, "The haptic device is gone: plug it in again; the hand is uncoupled.",
+    )  # fmt: skip
 
 
 @pytest.mark.parametrize(

@@ -19,6 +19,7 @@ from test_tui_pages import read
 
 from groundstation.training.measures import Measures
 from groundstation.tui.app import FlightApp
+from groundstation.tui.checks_computer import judged
 from groundstation.tui.pages import PAGES
 
 SIZES = [(80, 24), (120, 40), (200, 60)]
@@ -70,6 +71,7 @@ class Flown(CannedFollower):
 def test_a_page(snap_compare, page, size, monkeypatch):
     monkeypatch.setattr("groundstation.tui.checks_here.os.access", lambda *_: True)
     monkeypatch.setattr("groundstation.tui.checks_here.shutil.disk_usage", lambda _: Disk())
+    monkeypatch.setattr("groundstation.tui.checks_computer.supply", lambda _: judged(80.0))
     run = msgspec.structs.replace(
         canned_run(simulated=size[0] != 120),
         config="/home/me/groundstation.toml",

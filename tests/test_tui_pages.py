@@ -15,9 +15,10 @@ from textual.command import CommandPalette
 from textual.widgets import Input
 
 from groundstation.config import Buttons
-from groundstation.messages import Autopilot, CommandKind, FlightMode, Parameter, Phase
+from groundstation.messages import Autopilot, CommandKind, Event, FlightMode, Health, Parameter, Phase
 from groundstation.tui.acts import URGENT
 from groundstation.tui.app import FlightApp
+from groundstation.tui.checks_computer import judged
 from groundstation.tui.lines import Lines
 from groundstation.tui.pages import PAGES
 from groundstation.tui.screens.dialog import Confirm, Typed
@@ -58,6 +59,12 @@ def lines(scene: Cockpit) -> str:
     """Return what the list of the page shows."""
     shown = scene.app.screen.query_one(Lines)
     return "\n".join(shown.render_line(y).text.rstrip() for y in range(shown.size.height))
+
+
+@pytest.fixture(autouse=True)
+def _mains(monkeypatch):
+    """Whatever the battery of the computer that tests: it is not what is judged here."""
+    monkeypatch.setattr("groundstation.tui.checks_computer.supply", lambda _: judged(math.nan))
 
 
 def read(scene: Cockpit, **changes: float) -> None:
@@ -165,9 +172,9 @@ async def test_preflight_says_of_every_check_how_it_is():
         shown = lines(scene)
         assert "✓ may be flown   ▲ 3 to know of" in shown
         for words in (
-            "haptic device", "handle", "servo", "link", "round trip, loss", "vehicle", "health", "since boot",
-            "position", "home", "battery", "fence", "speed limits", "mission",
-            "recording", *(each.name for each in JUDGED),
+            "haptic device", "handle", "servo", "link", "round trip, loss", "vehicle", "health", "transmitter",
+            "since boot", "position", "home", "battery", "fence", "speed limits", "mission",
+            "recording", "this computer", *(each.name for each in JUDGED),
         ):  # fmt: skip
             assert words in shown
         assert "COM_RC_OVERRIDE = 1" in shown
@@ -189,7 +196,7 @@ async def test_preflight_says_of_every_check_how_it_is():
         (lambda s: setattr(s.status, "health", 126), "not calibrated: gyroscopes", "calibrate"),
         (lambda s: setattr(s.status, "loss", 0.2), "20.0 % of frames lost", "antennas"),
         (lambda s: setattr(s.status, "rtt", 0.9), "900 ms", "antennas"),
-        (lambda s: setattr(s.status, "speed_limits", (0.0, 3.0, 1.5)), "own are not read", "F9"),
+        (lambda s: setattr(s.status, "speed_limits", (0.0, 3.0, 1.5)), "own is 0", "parameters below"),
         (lambda s: setattr(s.parameters["MPC_XY_VEL_MAX"], "value", 0.0), "no speed around", "set the speed"),
         (lambda s: setattr(s.parameters["GF_ACTION"], "value", 4.0), "Terminate", "set Hold"),
     ],
@@ -215,6 +222,7 @@ async def test_what_is_wrong_is_red_with_what_to_do(spoil, state, remedy):
             "props off",
         ),
         (lambda s: setattr(s.status, "health", 63), "cannot be armed yet", "log (F12)"),
+        (lambda s: setattr(s.status, "firmware", b"1.13.3"), "PX4 1.13.3, older than 1.14", "update"),
         (lambda s: setattr(s.status, "health", 111), "local only, without GPS", "Return"),
         (lambda s: setattr(s.vehicle, "boot_t", 4.0), "4.0 s", "settle"),
         (lambda s: setattr(s.status, "rtt", math.nan), "not measured yet", "TIMESYNC"),
@@ -233,6 +241,52 @@ async def test_what_is_to_be_known_is_yellow_with_what_to_do(spoil, state, remed
         await scene.see()
         yellow = next(line for line in lines(scene).splitlines() if line.startswith("▲ ") and state in line)
         assert remedy in yellow
+
+
+async def test_why_it_cannot_be_armed_is_said_in_its_own_words():
+    async with cockpit(GROUND, size=(200, 70)) as scene:
+        read(scene)
+        scene.reader.shown.status.health = 63
+        told = Event(t=scene.reader.shown.t - 5.0, severity=1, source=b"link", text=b"Vehicle: no GPS")
+        for age, words in (
+            (5.0, "cannot be armed yet: no GPS  → mend"),
+            (70.0, "cannot be armed yet  → wait"),
+        ):
+            told.t = scene.reader.shown.t - age
+            scene.reader.shown = replace(scene.reader.shown, events=(told,))
+            await scene.press("f7") if age < 60.0 else None
+            await scene.see()
+            assert words in lines(scene)
+
+
+@pytest.mark.parametrize(
+    ("health", "words"),
+    [(127, "▲ transmitter             not heard"), (255, "✓ transmitter             heard")],
+)
+async def test_a_real_vehicle_without_a_transmitter_is_cautioned_about(health, words):
+    async with cockpit(GROUND, size=(120, 70), simulated=False) as scene:
+        read(scene)
+        scene.reader.shown.status.health = health
+        await scene.press("f7")
+        await scene.see()
+        assert words in lines(scene)
+
+
+async def test_health_that_was_not_told_is_not_taken_for_sensors_that_are_not_calibrated():
+    async with cockpit(GROUND, size=(120, 70)) as scene:
+        read(scene)
+        scene.reader.shown.status.health = Health.TRANSMITTER
+        await scene.press("f7")
+        await scene.see()
+        assert "■ health                  not told yet" in lines(scene)
+
+
+async def test_speeds_that_were_not_read_are_red_and_say_so():
+    async with cockpit(GROUND, size=(120, 70)) as scene:
+        scene.reader.shown.status.speed_limits = (0.0, 0.0, 0.0)
+        await scene.press("f7")
+        await scene.see()
+        assert "■ speed limits            the vehicle's own are not read" in lines(scene)
 
 
 async def test_an_autopilot_that_is_not_known_is_red():

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from groundstation.messages import REASON_TEXT, Autopilot, Severity
 from groundstation.vehicle.failsafes import verdict
-from groundstation.vehicle.profiles import PROFILES, profile_of, speed_limits, unsafe_for
+from groundstation.vehicle.profiles import PROFILES, outdated, profile_of, speed_limits, unsafe_for
 from sim.autopilot.parameters import SPECS
 
 GOOD = {
@@ -175,3 +175,20 @@ def test_what_bounds_the_speed_is_among_what_is_judged(profile) -> None:
 def test_the_documentation_names_every_parameter_that_is_judged(profile) -> None:
     text = (Path(__file__).resolve().parents[1] / "docs" / "operating.md").read_text(encoding="utf-8")
     assert [each.name for each in profile.judged if f"`{each.name}`" not in text] == []
+
+
+@pytest.mark.parametrize(
+    ("profile", "firmware", "old"),
+    [
+        (PX4, "1.13.3", True),
+        (PX4, "1.14.0", False),
+        (PX4, "1.16.0 (beta)", False),
+        (PX4, "2.0.0", False),
+        (PX4, "", False),
+        (PX4, "custom", False),
+        (ARDUPILOT, "4.0.7", True),
+        (ARDUPILOT, "4.6.1", False),
+    ],
+)
+def test_a_firmware_older_than_what_is_known_is_outdated(profile, firmware: str, old: bool) -> None:
+    assert outdated(profile, firmware) is old

@@ -188,6 +188,84 @@ def test_mavsdk_is_heard_through_the_pump():
         vehicle.close()
 
 
+class Station:
+    """A way that brings what was put in, and takes everything."""
+
+    def __init__(self, *datagrams):
+        self.left = list(datagrams)
+
+    def receive(self):
+        time.sleep(0.001)
+        return self.left.pop(0) if self.left else b""
+
+    def send(self, data):
+        pass
+
+    def close(self):
+        pass
+
+
+def heartbeat(system: int, autopilot: int) -> bytes:
+    sender = mavlink.MAVLink(None, srcSystem=system, srcComponent=1)
+    return bytes(sender.heartbeat_encode(2, autopilot, 0, 0, 4).pack(sender))
+
+
+class Mav:
+    """Takes bytes, as MAVSDK does, and says nothing."""
+
+    def subscribe_raw_bytes_to_be_sent(self, _):
+        pass
+
+    add_any_connection = pass_received_raw_bytes = subscribe_raw_bytes_to_be_sent
+
+
+def heard(*datagrams: bytes):
+    """Return a pump that watches system 1 and has heard these, its clock one further with each."""
+    from groundstation.vehicle.gate import Gate
+    from groundstation.vehicle.pump import Pump
+
+    times = iter(range(1, 100))
+    way = Station(*datagrams)
+    pump = Pump(way, Gate(0.15, time.monotonic), None, lambda: next(times))
+    pump.watch(1)
+    pump.start(Mav())
+    deadline = time.monotonic() + 5
+    while way.left and time.monotonic() < deadline:
+        time.sleep(0.005)
+    pump.stop()
+    assert not way.left
+    return pump
+
+
+def test_another_station_on_the_link_is_not_taken_for_the_vehicle():
+    """Radios and routers pass on what other stations say: a vehicle that is silent stays silent for that."""
+    pump = heard(
+        heartbeat(1, mavlink.MAV_AUTOPILOT_PX4), *[heartbeat(254, mavlink.MAV_AUTOPILOT_INVALID)] * 5
+    )
+    assert pump.heard_t == 1
+    assert not pump.others
+
+
+def test_another_vehicle_is_told_once_and_the_silence_of_ours_with_its_end():
+    from groundstation.config import Safety
+    from groundstation.messages import Severity
+    from groundstation.vehicle.hearing import Hearing
+
+    pump = heard(heartbeat(1, mavlink.MAV_AUTOPILOT_PX4), heartbeat(2, mavlink.MAV_AUTOPILOT_PX4))
+    assert pump.heard_t == 1
+    hearing = Hearing(pump, Safety())
+    assert [(severity, words[:27]) for severity, words in hearing.news(1.1)] == [
+        (Severity.WARNING, "Another vehicle, system 2, ")
+    ]
+    assert not list(hearing.news(1.2))
+    ((_, silent),) = hearing.news(1.6)
+    assert "silent" in silent
+    assert not list(hearing.news(2.0))
+    pump.heard_t = 2.1
+    assert list(hearing.news(2.2)) == [(Severity.INFO, "The vehicle is heard again.")]
+    assert hearing.absences == 1
+
+
 KEY = bytes(range(32))
 
 
@@ -255,6 +333,14 @@ class Signed:
             messages.append(message)
         log.close()
         return messages
+
+
+def test_whoever_asks_a_station_for_its_parameters_is_not_heard(tmp_path):
+    signed = Signed(tmp_path)
+    signed.say(signed.plain.param_request_list_encode(255, 190), signed.signer)
+    signed.say_heartbeat()
+    assert [each.get_type() for each in signed.ears.heard] == ["HEARTBEAT"]
+    signed.logged()
 
 
 def test_what_radios_tell_makes_no_silent_vehicle_alive(tmp_path):

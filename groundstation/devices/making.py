@@ -20,7 +20,7 @@ def raw_device(uri: str, config: Path | None) -> HapticDevice:
     try:
         return _made(uri, load_settings(config))
     except DeviceError as error:
-        raise InputError(f"{uri}: {error}") from error
+        raise InputError(str(error) if uri in str(error) else f"{uri}: {error}") from error
 
 
 def flight_device(uri: str, settings: Settings) -> HapticDevice:

@@ -37,7 +37,7 @@ def read_flight(path: Path) -> Raw:
     if reader is None:
         raise InputError(f"{path}: is none of {', '.join(_READERS)}; give a recording, a PX4 log or a table.")
     if not path.is_file():
-        raise InputError(f"{path}: there is no such file.")
+        raise InputError(f"{path}: there is no such file; check the path.")
     return reader(path)
 
 

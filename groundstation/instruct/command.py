@@ -73,9 +73,9 @@ def _status(taken: Seat) -> int:
 def _watch(taken: Seat) -> int:
     """Tell how it goes until the flight ends: a line that changes, else one now and then; events stay."""
     print(f"Watching {title(taken.run)}; Ctrl-C ends it.")
-    every = _WATCH_S if sys.stdout.isatty() else _LINE_EVERY_S
     told_t, next_t = time.monotonic(), 0.0
     with StatusLine(sys.stdout) as out:
+        every = _WATCH_S if out.live else _LINE_EVERY_S
         while taken.there:
             view = taken.look()
             for event in view.events:

@@ -74,10 +74,12 @@ def fill(parser: argparse.ArgumentParser) -> None:
         ("gps-loss", "S", *_OUTAGE, "the vehicle has no GPS for so long"),
         ("battery", "PERCENT", 1.0, 100.0, "so much charge is left"),
     ):
-        acts.add_parser(name, help=words).add_argument("amount", type=number(least, most), metavar=unit)
+        act = acts.add_parser(name, help=words)
+        told = f"{'seconds' if unit == 'S' else 'percent'}, {least:g} to {most:g}"
+        act.add_argument("amount", type=number(least, most), metavar=unit, help=told)
     acts.add_parser("calm", help="take it back: wind and link as before, device and GPS there again")
     say = acts.add_parser("say", help="tell the trainee something, on their screen")
-    say.add_argument("text", nargs="+", metavar="TEXT")
+    say.add_argument("text", nargs="+", metavar="TEXT", help="what; quotes are not needed")
     acts.add_parser("hold", help="the vehicle stops and stays there; the hand is uncoupled")
     acts.add_parser("land", help="the vehicle lands where it is; the hand is uncoupled")
     acts.add_parser("status", help="how the trainee is doing, and what is in force")

@@ -14,6 +14,7 @@ from groundstation.messages import (
     VehicleStatus,
 )
 from groundstation.run import Run
+from groundstation.training.briefing import criteria
 
 # What is older than this is said to be, s.
 _OLD_S = 1.5
@@ -38,6 +39,8 @@ def status(run: Run, view: Snapshot, in_force: str) -> list[tuple[str, str]]:
         ("trainee", f"{run.pilot or 'nobody by name'}, {_hand(view)}"),
         ("vehicle", _vehicle(view)),
         ("mission", _progress(view)),
+        ("goal", _goal(run)),
+        ("score", _score(view)),
         ("link", _link(view)),
         ("in force", in_force),
     ]
@@ -112,6 +115,15 @@ def _progress(view: Snapshot) -> str:
     if progress.legs:
         words.append(f"point {min(progress.leg + 1, progress.legs)} of {progress.legs}")
     return ", ".join((*words, *_margins(progress)))
+
+
+def _goal(run: Run) -> str:
+    """Return what must hold for the mission to be passed."""
+    return "; ".join(criteria(run.mission)) if run.mission and run.mission.judged else "nothing is judged"
+
+
+def _score(view: Snapshot) -> str:
+    return (view.progress.score.decode(errors="replace") if view.progress else "") or "none yet"
 
 
 def _margins(progress: MissionProgress) -> list[str]:

@@ -50,7 +50,8 @@ def write(flights: Sequence[Flown], curriculum: Sequence[Mission], out: Path) ->
 def certificate_of(flights: Sequence[Flown], curriculum: Sequence[Mission], today: datetime.date) -> Report:
     """Return a pilot's certificate; see `write`."""
     standing = standing_of(curriculum, flights, today)
-    ride = [each for each in flights if each.mission == CHECK_RIDE and each.passed]
+    alone = [each for each in flights if not each.instructed]
+    ride = [each for each in alone if each.mission == CHECK_RIDE and each.passed]
     findings = [
         Finding("", "missions passed", f"{standing.passed} of {len(standing.records)}"),
         Finding("", "check-ride", _best_words(ride) if ride else "not passed yet"),
@@ -59,6 +60,7 @@ def certificate_of(flights: Sequence[Flown], curriculum: Sequence[Mission], toda
             "", "of it with a real vehicle", hours(sum(f.duration_s for f in flights if not f.simulated))
         ),
         Finding("", "flights", f"{len(flights)}"),
+        Finding("", "of them with an instructor's doing, as practice", f"{len(flights) - len(alone)}"),
         Finding("", "collisions", f"{sum(each.collisions for each in flights)}"),
     ]
     lead = [
@@ -66,7 +68,7 @@ def certificate_of(flights: Sequence[Flown], curriculum: Sequence[Mission], toda
         NO_LICENCE,
     ]
     facts = [("issued", f"{today}"), ("by", f"groundstation {__version__}")]
-    tables = [_missions(flights, curriculum), _skills(flights, curriculum)]
+    tables = [_missions(alone, curriculum), _skills(flights, curriculum)]
     return Report(f"Flown by feel: {flights[0].pilot}", lead, findings, (), facts, tables)
 
 

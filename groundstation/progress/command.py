@@ -101,7 +101,13 @@ def _flights(folder: Path, pilot: str, *, must_be: bool) -> Sequence[Flown]:
 
 
 def _read(folder: Path) -> list[Flown]:
-    """Return all flights; to read makes no file where there is none."""
+    """Return all flights; to read makes no file where there is none.
+
+    Raises:
+        InputError: It is no folder, or its store cannot be read.
+    """
+    if folder.exists() and not folder.is_dir():
+        raise InputError(f"{folder}: is no folder; choose one with recordings by --logs.")
     if not store_in(folder).exists():
         return []
     with _open(folder) as store:

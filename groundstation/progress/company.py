@@ -37,6 +37,20 @@ def ghost_of(asked: Ghost, mission: Mission, path: Path, best: Track | None) -> 
     return reference.tracks.get(EXPERT) if reference is not None else None
 
 
+def skill_of(mission: Mission, flights: Sequence[Flown], curriculum: Sequence[Mission]) -> float:
+    """Return what a pilot can of what a mission is mainly for, 0 to 1; of all they trained where it is for nothing.
+
+    Args:
+        mission: What is flown; the first of its skills counts.
+        flights: The pilot's, oldest first.
+        curriculum: All missions.
+    """
+    levels = levels_of({each.name: each for each in (*curriculum, mission)}, flights)
+    if mission.skills:
+        return levels.get(mission.skills[0], 0.0) / 100.0
+    return sum(levels.values()) / len(levels) / 100.0 if levels else 0.0
+
+
 def guidance_of(mission: Mission, flights: Sequence[Flown], curriculum: Sequence[Mission]) -> float:
     """Return how strong guidance is, 0 to 1: whole at first, none from `SKILLED` on; it falls with the level between.
 
@@ -50,8 +64,7 @@ def guidance_of(mission: Mission, flights: Sequence[Flown], curriculum: Sequence
     """
     if not mission.judged or not mission.skills:
         return 0.0
-    missions = {each.name: each for each in (*curriculum, mission)}
-    level = levels_of(missions, flights).get(mission.skills[0], 0.0)
+    level = 100.0 * skill_of(mission, flights, curriculum)
     return min(max(1.0 - level / SKILLED, 0.0), 1.0)
 
 

@@ -87,7 +87,9 @@ class Desk:
         """Return the score of a pilot's best flight of a mission as it is, against a par; None without one."""
         flights, _ = self._flights(pilot)
         same = [each for each in flights if (each.mission, each.digest) == (mission.name, digest_of(mission))]
-        scores = [score_of(mission, measures_of(each), par) for each in same if each.passed]
+        scores = [
+            score_of(mission, measures_of(each), par) for each in same if each.passed and not each.instructed
+        ]
         return max((score for score in scores if score), key=lambda score: score.points, default=None)
 
     def _flights(self, pilot: str) -> tuple[list[Flown], str]:

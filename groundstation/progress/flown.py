@@ -26,6 +26,7 @@ class Flown(Struct, frozen=True):
         measures: What was measured; what does not exist is left out.
         recording: The file's name.
         program: The version that judged it.
+        instructed: An instructor let something happen: it is practice, and neither passes nor fails the mission.
         number: In the store; 0 outside.
     """
 
@@ -44,6 +45,7 @@ class Flown(Struct, frozen=True):
     measures: dict[str, float] = {}
     recording: str = ""
     program: str = ""
+    instructed: bool = False
     number: int = 0
 
     @property

@@ -44,4 +44,8 @@ def _typed(pilot: str, flights: int) -> bool:
     if not sys.stdin.isatty():
         raise InputError(f"forgetting {pilot} asks back, and there is no terminal; add --yes.")
     question = f"Remove {counted(flights, 'flight')} of {pilot}, for good? Type the name: "
-    return input(question).strip().casefold() == pilot.casefold()
+    try:
+        return input(question).strip().casefold() == pilot.casefold()
+    except EOFError:
+        print()
+        return False

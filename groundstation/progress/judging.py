@@ -56,6 +56,7 @@ def judged(known: Flown, attempt: int, measurer: Measurer, par: Measures | None)
     return msgspec.structs.replace(
         known,
         attempt=attempt,
+        instructed=measurer.instructed,
         duration_s=measurer.director.figures.duration,
         passed=judgement.passed if score else None,
         points=score.points if score else None,

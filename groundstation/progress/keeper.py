@@ -42,8 +42,7 @@ class Keeper:
 
     def look(self) -> list[str]:
         """Keep what has landed since; return what there is to be said of it."""
-        while self._seen < len(self._attempts.landed):
-            measurer = self._attempts.landed[self._seen]
+        for measurer in self._attempts.take():
             self._seen += 1
             if self._run.pilot:
                 flown = judged(self._known, self._seen, measurer, self._run.par)
@@ -80,7 +79,7 @@ class Keeper:
     def _start(self, flown: Flown, track: Track) -> None:
         self.kept = self._told = 0
         thread = threading.Thread(target=self._keep, args=(flown, track), name="progress")
-        self._threads.append(thread)
+        self._threads = [*(each for each in self._threads if each.is_alive()), thread]
         thread.start()
 
     def _keep(self, flown: Flown, track: Track) -> None:

@@ -33,7 +33,7 @@ def fill(parser: argparse.ArgumentParser) -> None:
     pilots = acts.add_parser("pilots", help="everybody who flies here")
     pilots.add_argument("--json", action="store_true", default=argparse.SUPPRESS, help="for programs")
     certificate = acts.add_parser("certificate", help="what a pilot has passed, to print")
-    certificate.add_argument("name", metavar="PILOT")
+    certificate.add_argument("name", metavar="PILOT", help="whose")
     certificate.add_argument(
         "--out", type=Path, metavar="FILE", help="a .pdf, .html or .md file (default: certificate.html)"
     )
@@ -42,7 +42,7 @@ def fill(parser: argparse.ArgumentParser) -> None:
         "files", nargs="*", type=Path, metavar="FLIGHT.rrd", help="recordings (default: all of the folder)"
     )
     forget = acts.add_parser("forget", help="remove all that is kept of a pilot")
-    forget.add_argument("name", metavar="PILOT")
+    forget.add_argument("name", metavar="PILOT", help="who")
     forget.add_argument("--yes", action="store_true", help="do not have the name typed again")
     for act in (pilots, certificate, importing, forget):
         _add_logs(act, argparse.SUPPRESS)

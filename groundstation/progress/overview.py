@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 from groundstation.progress.flown import Flown
-from groundstation.progress.skills import Standing
+from groundstation.progress.skills import Record, Standing
 from groundstation.progress.words import counted, due_words, hours, mark, number, trend
 
 _HEADS = ("", "mission", "level", "best", "last", "trend", "flights", "passed, due")
@@ -30,7 +30,7 @@ def table(pilot: str, standing: Standing, flights: Sequence[Flown], today: datet
                 number(record.best),
                 number(record.points[-1] if record.points else None),
                 trend(record.points),
-                str(record.flights or "–"),
+                _flown(record),
                 ", ".join(
                     filter(None, (record.passed and record.passed.isoformat(), due_words(record, today)))
                 ),
@@ -41,9 +41,18 @@ def table(pilot: str, standing: Standing, flights: Sequence[Flown], today: datet
         words = f"Next: {standing.next.mission} ({standing.next.why})."
         lines += textwrap.wrap(words, _WIDTH, subsequent_indent=" " * len("Next: "))
     lines += ["", *aligned(rows)]
+    if any(record.instructed for record in standing.records.values()):
+        lines.append(
+            "i: an instructor let something happen; practice, which passes no mission and has no score here"
+        )
     if standing.levels:
         lines += ["", "skills", *_levels(standing)]
     return "\n".join(lines)
+
+
+def _flown(record: Record) -> str:
+    """Write how many flights there were, with an i for each that an instructor had a hand in."""
+    return f"{record.flights or '–'}{f' ({record.instructed}i)' if record.instructed else ''}"
 
 
 def summary(pilot: str, standing: Standing, flights: Sequence[Flown]) -> str:
@@ -77,6 +86,7 @@ def fields(
         "pilot": pilot,
         "flights": len(flights),
         "duration_s": round(sum(each.duration_s for each in flights), 1),
+        "instructed": sum(each.instructed for each in flights),
         "collisions": sum(each.collisions for each in flights),
         "passed": standing.passed,
         "next": {"mission": standing.next.mission, "why": standing.next.why} if standing.next else None,
@@ -89,6 +99,7 @@ def fields(
                 "open": record.open,
                 "needs": list(record.missing),
                 "flights": record.flights,
+                "instructed": record.instructed,
                 "points": [round(each, 1) for each in record.points],
                 "best": None if record.best is None else round(record.best, 1),
                 "passed": record.passed.isoformat() if record.passed else None,
@@ -117,7 +128,7 @@ def everybody(flights: Sequence[Flown]) -> dict[str, Career]:
         found[pilot] = Career(
             len(theirs),
             round(sum(each.duration_s for each in theirs), 1),
-            len({each.mission for each in theirs if each.passed}),
+            len({each.mission for each in theirs if each.passed and not each.instructed}),
             theirs[-1].day.isoformat(),
         )
     return found

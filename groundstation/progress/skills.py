@@ -7,6 +7,7 @@ A skill's level is a weighted mean of the points of the flights that trained it,
 from __future__ import annotations
 
 import datetime
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
@@ -28,6 +29,7 @@ class Record(NamedTuple):
         mission: The mission.
         points: Of each flight with a score, oldest first.
         flights: How many there were.
+        instructed: In how many of them an instructor let something happen: they are practice, and count no further.
         passed: The day it was passed first; None before.
         failed: How often in a row it was not passed, the last times.
         missing: Missions it needs that were not passed yet; it is open where there are none, or it was passed.
@@ -37,6 +39,7 @@ class Record(NamedTuple):
     mission: Mission
     points: tuple[float, ...] = ()
     flights: int = 0
+    instructed: int = 0
     passed: datetime.date | None = None
     failed: int = 0
     missing: tuple[str, ...] = ()
@@ -101,9 +104,14 @@ def standing_of(curriculum: Sequence[Mission], flights: Sequence[Flown], today: 
         today: What is due depends on it.
     """
     missions = {mission.name: mission for mission in curriculum if mission.judged}
+    practised = Counter(each.mission for each in flights if each.instructed)
+    flights = [each for each in flights if not each.instructed]
     flown = {name: [each for each in flights if each.mission == name] for name in missions}
     passed = {name for name, theirs in flown.items() if any(each.passed for each in theirs)}
-    records = {name: _record(mission, flown[name], passed, missions) for name, mission in missions.items()}
+    records = {
+        name: _record(mission, flown[name], passed, missions, practised[name])
+        for name, mission in missions.items()
+    }
     levels = levels_of(missions, flights)
     last = next((each for each in reversed(flights) if each.mission in missions), None)
     return Standing(records, levels, _advice(records, levels, last, today))
@@ -119,7 +127,7 @@ def levels_of(missions: Mapping[str, Mission], flights: Sequence[Flown]) -> dict
     levels: dict[str, float] = {}
     for each in flights:
         mission = missions.get(each.mission)
-        if mission is None or each.points is None:
+        if mission is None or each.points is None or each.instructed:
             continue
         worth = each.points if each.passed else NOT_PASSED * each.points
         for skill in mission.skills:
@@ -129,7 +137,11 @@ def levels_of(missions: Mapping[str, Mission], flights: Sequence[Flown]) -> dict
 
 
 def _record(
-    mission: Mission, theirs: Sequence[Flown], passed: set[str], missions: Mapping[str, Mission]
+    mission: Mission,
+    theirs: Sequence[Flown],
+    passed: set[str],
+    missions: Mapping[str, Mission],
+    practised: int,
 ) -> Record:
     failed = 0
     for each in reversed(theirs):
@@ -139,7 +151,8 @@ def _record(
     return Record(
         mission,
         points=tuple(each.points for each in theirs if each.points is not None),
-        flights=len(theirs),
+        flights=len(theirs) + practised,
+        instructed=practised,
         passed=next((each.day for each in theirs if each.passed), None),
         failed=failed,
         missing=tuple(name for name in mission.needs if name in missions and name not in passed),

@@ -35,8 +35,9 @@ _COLUMNS = (
     "measures",
     "recording",
     "program",
+    "instructed",
 )
-_FLAGS = ("simulated", "passed")
+_FLAGS = ("simulated", "passed", "instructed")
 _TABLES = ("parts", "measures")
 _SCALES = Workload.__struct_fields__
 
@@ -126,7 +127,7 @@ class Store:
         )
 
     def best(self, pilot: str, mission: str, digest: str | None = None) -> Flown | None:
-        """Return a pilot's best flight of a mission, passed before not passed; None without one.
+        """Return a pilot's best flight of a mission without an instructor's doing, passed before not passed, or None.
 
         Args:
             pilot: Who.
@@ -136,7 +137,7 @@ class Store:
         scored = [
             each
             for each in self.flights(pilot, mission)
-            if each.points is not None and digest in (None, each.digest)
+            if each.points is not None and not each.instructed and digest in (None, each.digest)
         ]
         return max(scored, key=lambda each: (each.passed is True, each.points or 0.0), default=None)
 

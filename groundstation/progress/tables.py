@@ -35,5 +35,6 @@ STEPS = (
         performance INTEGER NOT NULL, effort INTEGER NOT NULL, frustration INTEGER NOT NULL
     );
     """,
+    "ALTER TABLE flights ADD COLUMN instructed INTEGER NOT NULL DEFAULT 0;",
 )
 VERSION = len(STEPS)

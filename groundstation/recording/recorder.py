@@ -10,6 +10,7 @@ import threading
 import time
 import traceback
 
+from groundstation import heap
 from groundstation.bus import Bus
 from groundstation.child import Lifeline, run_child
 from groundstation.clock import Every, Pacer
@@ -28,6 +29,7 @@ _NICENESS = 10
 
 def record(run: Run, bus: Bus, lifeline: Lifeline) -> None:
     """Record until the lifeline no longer holds."""
+    heap.take_one_arena()
     taps = Taps(bus)
     # Rerun takes seconds to import on a busy machine, longer than the taps hold. The heart begins to beat after it.
     opening = threading.Thread(target=importlib.import_module, args=("groundstation.recording.session",))
@@ -43,12 +45,14 @@ def record(run: Run, bus: Bus, lifeline: Lifeline) -> None:
     start = start_of(run.started, datetime.datetime.now().astimezone(), time.monotonic())
     session = Session(run, start, bus.event)
     batch = Every(_LIVE_BATCH_S if run.viewer_url else _BATCH_S)
-    pacer = Pacer(_TURN_S)
+    pacer, give_back = Pacer(_TURN_S), Every(heap.GIVE_BACK_S)
     while lifeline.holds():
         if taps.drain():
             bus.event(Severity.WARNING, "The recorder was held up for seconds; handle samples are missing.")
         if batch.due(time.monotonic()):
             session.take(taps.take())
+            if give_back.due(time.monotonic()):
+                heap.give_back()
         pacer.wait()
     taps.drain()
     session.take(taps.take())

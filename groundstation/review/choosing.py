@@ -18,6 +18,8 @@ def chosen(named: Path | None, folder: Path) -> Path:
     Raises:
         InputError: There is no such flight.
     """
+    if named is not None and named.is_dir():
+        raise InputError(f"{named}: is a folder; give a recording, or the folder by --logs for its newest.")
     if named is not None and not (str(named).isdecimal() and not named.exists()):
         return named
     entries = list_flights(folder)

@@ -42,11 +42,16 @@ def write_comparison(paths: Sequence[Path], out: Path) -> None:
         out: The recording; it is replaced.
 
     Raises:
-        InputError: A flight cannot be read, or its hand was never coupled.
+        InputError: A flight cannot be read, or its hand was never coupled, or there is no room to write.
     """
     flights = [Flight(path) for path in paths]
     stream = rr.RecordingStream(APPLICATION, recording_id=f"{paths[0].stem} {paths[1].stem}")
-    stream.save(out, default_blueprint=_blueprint())
+    try:
+        stream.save(out, default_blueprint=_blueprint())
+    except RuntimeError as error:
+        raise InputError(
+            f"{out}: cannot be written ({error}); free the disk, or choose another --out."
+        ) from error
     for still in static_scene(flights[0].mission):
         # Of the scene only what stands still is of use; what moves is drawn for each flight.
         if "/vehicle" not in still.path:

@@ -17,6 +17,8 @@ examples:
   groundstation review 1 --at 31.5            the viewer at that moment of the recording
   groundstation review A.rrd B.rrd            two flights in one view, from the moment the hand was coupled
   groundstation review FLIGHT.rrd --web       in a browser, on a machine without a display
+
+exit codes: 0 done, 2 bad input or no such flight, 130 stopped
 """
 RUN = "groundstation.review.show:run"
 

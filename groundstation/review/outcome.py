@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from groundstation.pilot.surroundings import USUAL_RADIUS
 from groundstation.review.flight import Flight
-from groundstation.review.sights import sights
+from groundstation.review.sights import instructed, sights
 from groundstation.training.attempts import Attempts
 from groundstation.training.director import Figures, Stage
 from groundstation.training.judgement import Judgement, judgement_of
@@ -62,6 +62,8 @@ def outcome_of(flight: Flight) -> Outcome:
 def attempts_of(flight: Flight, mission: Mission) -> Attempts:
     """Return what has seen all of a recording of a mission."""
     attempts = Attempts(mission, radius_of(mission))
+    for t, happening in sorted(instructed(flight), key=lambda done: done[0]):
+        attempts.instruct(t, happening)
     for sight in sights(flight):
         attempts.show(sight)
     return attempts

@@ -9,9 +9,10 @@ from collections.abc import Iterator
 import numpy as np
 
 from groundstation.errors import InputError
-from groundstation.recording import lanes, schema
+from groundstation.recording import entities, lanes, schema
 from groundstation.recording.schema import Quantity
 from groundstation.review.flight import Flight, Numbers
+from groundstation.training.happening import INSTRUCTOR, Happening, unpacked
 from groundstation.training.measurer import HandSight, VehicleSight
 
 COUPLED = frozenset({"engaged", "on leash"})
@@ -22,6 +23,15 @@ def sights(flight: Flight) -> Iterator[VehicleSight | HandSight]:
     """Yield what a flight's measurer is shown. Times are those of the machine's clock; before schema 4 of the run."""
     # Of two at the same time the vehicle comes first, as live.
     yield from heapq.merge(_vehicle(flight), _hand(flight), key=lambda sight: sight.t)
+
+
+def instructed(flight: Flight) -> Iterator[tuple[float, Happening]]:
+    """Yield what an instructor let happen, and when, s on the clock of the sights."""
+    for line in flight.texts(entities.INTERVENTIONS):
+        answer, _, source, packed = line.text.split(" ", 3)
+        happening = unpacked(packed.encode())
+        if answer == "done" and source.encode() == INSTRUCTOR and happening is not None:
+            yield origin(flight) + line.t, happening
 
 
 def origin(flight: Flight) -> float:

@@ -28,7 +28,7 @@ def briefing(mission: Mission, par: str, width: int) -> list[str]:
         width: Of the longest line, characters.
     """
     rows = [("teaches", [mission.teaches]), ("watch", list(mission.watch)), ("asks", list(_asked(mission)))]
-    rows += [("passed", list(_criteria(mission)) if mission.judged else ["nothing is judged"])]
+    rows += [("passed", list(criteria(mission)) if mission.judged else ["nothing is judged"])]
     rows += [("par", [par])]
     rows += [("happens", [event_words(event) for event in mission.event]), ("world", list(_world(mission)))]
     rows += [("trains", [", ".join(mission.skills)]), ("needs", [", ".join(mission.needs)])]
@@ -81,20 +81,21 @@ def _place(at: Point, radius: float, hold_s: float, yaw_deg: float | None) -> st
     return f"{place}, stay {hold_s:g} s" if hold_s else place
 
 
-def _criteria(mission: Mission) -> Iterator[str]:
-    criteria, target, pad = mission.criteria, mission.target, mission.landing_pad
-    yield f"within {criteria.time_limit_s:g} s from take-off to landing"
+def criteria(mission: Mission) -> Iterator[str]:
+    """Yield what must hold for a mission to be passed."""
+    asked, target, pad = mission.criteria, mission.target, mission.landing_pad
+    yield f"within {asked.time_limit_s:g} s from take-off to landing"
     if target:
-        yield f"no more than {criteria.final_error_m:g} m off the target at the end of the hold"
+        yield f"no more than {asked.final_error_m:g} m off the target at the end of the hold"
     if pad:
         yield f"landed within {pad.radius:g} m of the middle of the pad"
     if mission.obstacle:
-        forgiven = criteria.max_collisions
+        forgiven = asked.max_collisions
         yield f"{forgiven} collisions forgiven" if forgiven else "nothing touched"
-    if criteria.min_clearance_m:
-        yield f"never nearer than {criteria.min_clearance_m:g} m to an obstacle, measured from the hull"
-    if criteria.min_points:
-        yield f"at least {criteria.min_points:g} points"
+    if asked.min_clearance_m:
+        yield f"never nearer than {asked.min_clearance_m:g} m to an obstacle, measured from the hull"
+    if asked.min_points:
+        yield f"at least {asked.min_points:g} points"
 
 
 def _world(mission: Mission) -> Iterator[str]:

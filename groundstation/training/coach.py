@@ -16,6 +16,9 @@ from groundstation.training.habits import Habit, Seen, Watch
 SHOWN_S, LEAST_S = 6.0, 2.5
 # After any hint there is quiet, and after one the same waits longer each time, s; then it has been said.
 QUIET_S, AGAIN_S, TIMES = 10.0, 30.0, 3
+# Who can do all is left in quiet so many times as long: advice after every mistake is leant on (Winstein and Schmidt
+# 1990, Reduced frequency of knowledge of results enhances motor skill learning).
+_FADE = 3.0
 # From this level of a mission, or share of what is to be learnt, on nobody is told the basics.
 _ADVANCED_LEVEL, _SKILLED = 3, 0.7
 # The clearance's rate is filtered over about so long, s.
@@ -34,6 +37,7 @@ class Coach:
 
     def __init__(self, level: int = 1, skill: float = 0.0) -> None:
         self._basics = level < _ADVANCED_LEVEL and skill < _SKILLED
+        self._quiet_s = QUIET_S * (1.0 + (_FADE - 1.0) * skill)
         self._watch = Watch()
         self._said: dict[str, tuple[int, float]] = {}
         self._hint, self._hint_t = "", -math.inf
@@ -55,7 +59,7 @@ class Coach:
         mended = stood >= LEAST_S and all(each.words != self._hint for each in found)
         if stood >= SHOWN_S or mended or quiet:
             self._hint = ""
-        if quiet or seen.t - self._hint_t < QUIET_S:
+        if quiet or seen.t - self._hint_t < self._quiet_s:
             return self._hint, None
         habit = next((each for each in found if self._worth_saying(each, seen.t)), None)
         if habit is None:
@@ -76,12 +80,12 @@ class LiveCoach:
     """Feeds a coach from snapshots, and tells everybody what it says.
 
     Args:
-        run: What is flown; its mission's level and the handle's axes.
+        run: What is flown and how well its pilot can; its mission's level and the handle's axes.
         tell: Makes an event of a hint.
     """
 
     def __init__(self, run: Run, tell: Callable[[str], None]) -> None:
-        self._coach = Coach(run.mission.level if run.mission else 1)
+        self._coach = Coach(run.mission.level if run.mission else 1, run.skill)
         self._heading = run.settings.mapping.frame == "heading"
         self._yaw_range = run.settings.mapping.yaw_range
         self._tell = tell

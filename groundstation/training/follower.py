@@ -9,10 +9,12 @@ from groundstation.console import Snapshot
 from groundstation.messages import (
     EVENT_TEXT,
     HANDLE,
+    INTERVENTION_ANSWER,
     MISSION_PROGRESS,
     PART_TEXT,
     PILOT_STATE,
     POINTS_LOST,
+    SCORE_TEXT,
     VEHICLE_STATE,
     VEHICLE_STATUS,
     PointsLost,
@@ -22,14 +24,18 @@ from groundstation.messages import (
 from groundstation.training.attempts import Attempts
 from groundstation.training.conducting import Conductor
 from groundstation.training.director import Director
+from groundstation.training.happening import INSTRUCTOR, unpacked
 from groundstation.training.judgement import Judgement, judgement_of
 from groundstation.training.measurer import HandSight, Measurer, VehicleSight
 from groundstation.training.measures import Measures
 from groundstation.training.mission import Mission
+from groundstation.training.score import score_of
 from groundstation.training.sights import Sights
 from groundstation.training.story import Moment
+from groundstation.training.telling import so_far
 from sim.airframe import load_airframe
 
+_SCORE_EVERY_S = 1.0
 _HELD_UP = (
     "Held up for seconds, handle samples were missed: 'groundstation review --score' has the exact score."
 )
@@ -55,10 +61,12 @@ class MissionFollower:
         self.complete = True
         self._bus, self._par = bus, par
         self._sights = Sights()
+        self._score, self._next_score = b"", 0.0
         self._states = bus.subscriber(VEHICLE_STATE)
         self._statuses = bus.subscriber(VEHICLE_STATUS)
         self._pilots = bus.subscriber(PILOT_STATE)
         self._handles = bus.subscriber(HANDLE)
+        self._interventions = bus.subscriber(INTERVENTION_ANSWER)
         self._conductor = Conductor(mission, bus)
         self._progress = bus.publisher(MISSION_PROGRESS)
         self._losses = bus.publisher(POINTS_LOST)
@@ -77,14 +85,28 @@ class MissionFollower:
         """Take note of what is new, and tell the bus how it is going."""
         self._read()
         self._conductor.look(self.director, view.t)
-        self._progress.send(self.director.progress(view.t))
+        progress = self.director.progress(view.t)
+        progress.score = self._score_so_far(view.t)
+        self._progress.send(progress)
 
     def finish(self) -> None:
         """Take note of what is left, when no more records come."""
         self._read()
         self._show(self._sights.rest())
 
+    def _score_so_far(self, t: float) -> bytes:
+        """Return the score in words, for an instructor; it takes some milliseconds, so not every time."""
+        if t >= self._next_score:
+            self._next_score = t + _SCORE_EVERY_S
+            score = score_of(self.director.mission, self.measurer.measures(), self._par)
+            self._score = fit(so_far(score), SCORE_TEXT) if score and self.director.elapsed(t) > 0.0 else b""
+        return self._score
+
     def _read(self) -> None:
+        for done in sorted(self._interventions.drain(), key=lambda answer: answer.t):
+            happening = unpacked(done.happening)
+            if done.ok and done.source == INSTRUCTOR and happening is not None:
+                self.attempts.instruct(done.t, happening)
         # The order matters: see `Sights`.
         states = list(self._states.drain())
         statuses = list(self._statuses.drain())
@@ -96,11 +118,11 @@ class MissionFollower:
         self._show(self._sights.take(states, statuses, pilots, handles))
 
     def _show(self, sights: Iterable[VehicleSight | HandSight]) -> None:
-        landed = len(self.attempts.landed)
+        ended = False
         for sight in sights:
-            self.attempts.show(sight)
-        if len(self.attempts.landed) > landed:
-            self.judgement = judgement_of(self.attempts.landed[-1], self._par)
+            ended |= self.attempts.show(sight)
+        if ended:
+            self.judgement = judgement_of(self.attempts.judged, self._par)
             self._tell(self.judgement.story)
 
     def _tell(self, story: Iterable[Moment]) -> None:

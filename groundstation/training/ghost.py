@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 from groundstation.frames import Vector3
 from groundstation.training.measures import Track
 
@@ -30,5 +32,4 @@ def ghost_trail(track: Track, elapsed: float, seconds: float) -> list[Vector3]:
     if here is None:
         return []
     first, last = max(elapsed - seconds, 0.0) / track.every_s, elapsed / track.every_s
-    between = [point for row, point in enumerate(track.points) if first <= row <= last]
-    return [*between, here]
+    return [*track.points[math.ceil(first) : math.floor(last) + 1], here]

@@ -21,6 +21,9 @@ from groundstation.training.events import (
     WindChange,
 )
 
+# Who lets it happen, where it is not the mission's timetable.
+INSTRUCTOR = b"instructor"
+
 _POINTS = ("east", "north-east", "north", "north-west", "west", "south-west", "south", "south-east")
 # Less than this is no wind, m/s.
 _STILL = 0.05

@@ -7,12 +7,14 @@ numbers, to the last bit.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import NamedTuple
 
 from groundstation.frames import Vector3, Vector4
 from groundstation.training.director import Director, Stage
 from groundstation.training.measures import Measures
 from groundstation.training.mission import Mission
+from groundstation.training.rows import Rows
 from groundstation.training.smoothness import parted, smoothness
 from groundstation.training.way import off_the_way, way_of
 from sim.environment.world import World
@@ -67,6 +69,17 @@ class VehicleRow(NamedTuple):
     clearance: float
     off_the_way: float
 
+    @staticmethod
+    def numbers(row: VehicleRow) -> Sequence[float]:
+        """Return a row as seven numbers."""
+        return row.t, *row.position, row.speed, row.clearance, row.off_the_way
+
+    @classmethod
+    def of(cls, numbers: Sequence[float]) -> VehicleRow:
+        """Return the row that seven numbers stand for."""
+        t, x, y, z, speed, clearance, off_the_way = numbers
+        return cls(t, (x, y, z), speed, clearance, off_the_way)
+
 
 class HandRow(NamedTuple):
     """What is kept of a `HandSight` while the hand leads: |p̃| in m, disagreement in m/s, force in N."""
@@ -76,6 +89,17 @@ class HandRow(NamedTuple):
     disagreement: float
     force: float
     on_leash: bool
+
+    @staticmethod
+    def numbers(row: HandRow) -> Sequence[float]:
+        """Return a row as five numbers."""
+        return row
+
+    @classmethod
+    def of(cls, numbers: Sequence[float]) -> HandRow:
+        """Return the row that five numbers stand for."""
+        t, error, disagreement, force, on_leash = numbers
+        return cls(t, error, disagreement, force, bool(on_leash))
 
 
 class Measurer:
@@ -94,15 +118,16 @@ class Measurer:
         took_off_t, end_t: When it took off, and landed or was seen last, s; NaN before.
         held_t: When the target had been held for long enough, s; NaN before.
         place: Where it was seen last, world, m.
+        instructed: An instructor let something happen: it was not flown under the mission's own conditions.
     """
 
     def __init__(self, mission: Mission, radius: float, *, coupled: bool = False) -> None:
         self._world = World(mission.obstacle)
         self._way = way_of(mission)
-        self.coupled = coupled
+        self.coupled, self.instructed = coupled, False
         self.director = Director(mission, self._world, radius)
-        self.vehicle_rows: list[VehicleRow] = []
-        self.hand_rows: list[HandRow] = []
+        self.vehicle_rows = Rows(VehicleRow.numbers, VehicleRow.of, 7)
+        self.hand_rows = Rows(HandRow.numbers, HandRow.of, 5)
         self.collisions: list[tuple[float, str]] = []
         self.took_off_t = self.end_t = self.held_t = math.nan
         self.place: Vector3 = (0.0, 0.0, 0.0)

@@ -238,7 +238,7 @@ def find_mission(name: str) -> Path:
         MissionError: There is none; the message lists those there are.
     """
     given = Path(name)
-    if given.suffix == SUFFIX or given.exists():
+    if given.suffix == SUFFIX or (given.exists() and not given.is_dir()):
         return given
     shipped = MISSIONS_FOLDER / f"{name}{SUFFIX}"
     if shipped.is_file():

@@ -36,7 +36,7 @@ def fill(parser: argparse.ArgumentParser) -> None:
     show = acts.add_parser("show", help="all about one mission, with a map")
     show.add_argument("mission", metavar="NAME", help="by name or .toml file")
     check = acts.add_parser("check", help="say whether missions can be flown, and what is wrong")
-    check.add_argument("files", nargs="+", type=Path, metavar="FILE")
+    check.add_argument("files", nargs="+", type=Path, metavar="FILE", help="mission files (.toml)")
     _fill_new(acts.add_parser("new", help="make a mission out of a seed or of a recorded flight"))
     _fill_measure(
         acts.add_parser("measure", help="find the par: simulated operators fly it", description=_MEASURE)

@@ -113,7 +113,7 @@ def _time(part: Part, measurer: Measurer) -> Told:
 def _following(part: Part, measurer: Measurer) -> Told:
     del part
     for worst in _worst(measurer.hand_rows, lambda row: row.error):
-        leash = sum(row.on_leash for row in measurer.hand_rows if worst.t <= row.t <= worst.until)
+        leash = any(row.on_leash for row in measurer.hand_rows if worst.t <= row.t <= worst.until)
         words = f"the drone was {worst.worst:.2f} m behind the hand"
         yield worst, f"{words}, on the leash" if leash else words
 

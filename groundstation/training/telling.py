@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator
 
 from groundstation.training.judgement import Judgement
-from groundstation.training.score import NO_PAR, measure
+from groundstation.training.score import NO_PAR, Score, measure
 from groundstation.training.story import clock, worth_telling
 
 NAME = 15
@@ -33,6 +33,12 @@ def told(judgement: Judgement, par_from: str, start: float | None = None) -> Ite
         where = "" if start is None else f" (--at {moment.t - start:.1f})"
         name = "" if index else "points lost"
         yield f"{name:<{NAME}} {f'−{moment.lost:.1f}':>5} at {t}{where}, {moment.part}: {moment.words}"
+
+
+def so_far(score: Score) -> str:
+    """Return a score that still grows in one line: what was reached of each part's weight."""
+    parts = (f"{part.name} {part.points:.0f}/{part.weight:.0f}" for part in score.parts)
+    return f"{score.points:.0f} of 100 so far: {', '.join(parts)}"
 
 
 class Landings:

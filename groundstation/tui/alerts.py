@@ -24,6 +24,8 @@ _DEATHS, _GUARD = rows(Who.SUPERVISOR, Action.RELEASE), rows(Who.PILOT, Action.B
 _LOST, _STALLED = BY_FAULT[Fault.LINK_LOST], BY_FAULT[Fault.PROCESS_STALLED]
 _BATTERY = (BY_FAULT[Fault.BATTERY_EMPTY], BY_FAULT[Fault.BATTERY_LOW])
 _OVERRUN = BY_FAULT[Fault.SERVO_OVERRUN]
+# A device that is there has been found and opened after so long, also on a busy machine, s.
+_FOUND_S = 10.0
 _FIGURES = re.compile(r"[\d.]+")
 
 
@@ -84,6 +86,10 @@ def _device(frame: Frame) -> Iterator[Condition]:
     if frame.age(device) > REPORT_STALE_S:
         text = f"No word from the haptic device for {span_of_time(frame.age(device))}."
         yield Condition("device", Severity.WARNING, text)
+    elif frame.seeking:
+        if frame.now - frame.started > _FOUND_S:
+            text = "No haptic device has been found: plug it in and switch it on."
+            yield Condition("device", Severity.ALARM, text)
     elif not device.present:
         text = "The haptic device is gone: plug it in again; the hand is uncoupled."
         yield Condition("device", Severity.ALARM, text)

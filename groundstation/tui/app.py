@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import asyncio
 import datetime
-import gc
 import importlib
 import signal
 import time
@@ -28,12 +27,15 @@ from groundstation.run import Run, start_of
 from groundstation.training.coach import LiveCoach
 from groundstation.training.follower import MissionFollower
 from groundstation.training.workload import Workload
+from groundstation.tui import memory
 from groundstation.tui.acts import ACTS, URGENT, Act, coupled, in_air
 from groundstation.tui.alarms import Alarms
 from groundstation.tui.alerts import conditions
 from groundstation.tui.checks import red
+from groundstation.tui.checks_kept import ArmedChecks
 from groundstation.tui.choices import CHOICES, PRESETS_EXPLAINED, Choice
 from groundstation.tui.everywhere import KEYS
+from groundstation.tui.finding import DeviceWatch
 from groundstation.tui.frame import Frame, Reader, Supervisor, workspace
 from groundstation.tui.guarding import GuardWatch
 from groundstation.tui.hand import Hand, StickSender
@@ -53,9 +55,8 @@ from groundstation.tui.track import History, Track
 from groundstation.tui.viewer import Viewer
 from groundstation.tui.widgets.stick import YAW, stays
 
-_POLL_S = 0.1
+_ALARMS_S = 0.1
 _LOOK_S = 0.5
-_AFTER_PAGE_S = 0.3
 
 
 def _everywhere() -> list[BindingType]:
@@ -94,6 +95,7 @@ class FlightApp(Schooling):
         keeper: Keeps the flights that land, if they are anybody's.
         instructing: Lets wind and failures happen for a class of one.
         on_workload: Keeps what was answered after a flight.
+        tell: Makes words an event, for the recording.
         clock: Monotonic seconds, the bus's clock.
     """
 
@@ -115,6 +117,7 @@ class FlightApp(Schooling):
         keeper: Keeper | None = None,
         instructing: Instructing | None = None,
         on_workload: Callable[[Workload], None] = lambda _: None,
+        tell: Callable[[str], None] = lambda _: None,
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
         super().__init__(
@@ -131,16 +134,17 @@ class FlightApp(Schooling):
         self.theme = THEME.name
         self.hand = Hand()
         self._supervisor, self._stick, self._clock = supervisor, stick, clock
-        self._guard = GuardWatch()
+        self._guard, self._device = GuardWatch(), DeviceWatch()
         self._track, self._history = Track(), History()
         self._alarms, self._pace = Alarms(), PaintPace(run.settings.rates.screen)
         self._started = self._snapshot.t
         self._start = start_of(run.started, datetime.datetime.now().astimezone(), clock())
-        self._next_poll = self._next_look = 0.0
+        self._next_alarms = self._next_look = 0.0
         self._keepalive = Keepalive(self._send_stick, clock)
         self._instructing = instructing or Instructing(None)
         self._flight = FlightScreen(self.hand if stick is not None else None)
         self._milestones, self._viewer = Milestones(), Viewer()
+        self._armed_checks = ArmedChecks(tell)
         self._latest: Frame | None = None
 
     def get_driver_class(self) -> type[Driver]:
@@ -159,18 +163,22 @@ class FlightApp(Schooling):
             # Ended from outside, or the terminal has gone: out by the same door, terminal restored.
             loop.add_signal_handler(number, self._end, 128 + number)
         self.set_interval(1.0 / self._flight_run.settings.rates.screen, self.pull)
+        self.set_interval(memory.TIDY_S, memory.tidy)
         if self._stick is not None:
             self._keepalive.start()
+
+    def on_ready(self) -> None:
+        """The flight is shown; a test that shows many screens keeps none of them."""
+        if not self.is_headless:
+            memory.settle()
 
     def pull(self) -> None:
         """Take the newest of everything and show it."""
         self._keepalive.turned()
         snapshot = self._snapshot = self._reader.snapshot()
         self.follow(snapshot)
-        polled = snapshot.t >= self._next_poll
-        if polled:
-            self._next_poll = snapshot.t + _POLL_S
-            self._supervisor.poll()
+        # A process that has died uncouples: it is asked each time, for it costs next to nothing.
+        self._supervisor.poll()
         for note in self._answers.take(snapshot):
             severity = "error" if note.severity is Severity.ALARM else "warning"
             self.notify(note.text, severity=severity, timeout=6.0, markup=False)
@@ -182,7 +190,8 @@ class FlightApp(Schooling):
             self._track.add(east, north, up, snapshot.vehicle.t)
         self._history.add(snapshot, stale_s)
         frame = self._frame(snapshot)
-        if polled:
+        if snapshot.t >= self._next_alarms:
+            self._next_alarms = snapshot.t + _ALARMS_S
             self._alarms.look(conditions(frame), snapshot.t)
             if self._alarms.ring(snapshot.t):
                 self.bell()
@@ -196,6 +205,7 @@ class FlightApp(Schooling):
 
     def _look_around(self, frame: Frame) -> None:
         """Show the page that is due, but never in place of what the operator looks at."""
+        self._armed_checks.look(frame)
         if failure := self._viewer.failure():
             self.notify(f"The viewer: {failure}", severity="warning", timeout=8.0, markup=False)
         if self.screen is self._flight and (due := self._milestones.page(frame.snapshot, red(frame))):
@@ -217,6 +227,7 @@ class FlightApp(Schooling):
             stick=self.hand.share if self._stick is not None else None,
             hindrances={each.name: each.hindrance(snapshot) for each in (*ACTS, *CHOICES)},
             guarded_by=self._guard.look(snapshot),
+            device_found=self._device.look(snapshot),
             notes=tuple(self._answers.notes),
             track=self._track,
             history=self._history,
@@ -264,9 +275,6 @@ class FlightApp(Schooling):
             return
         while self.screen is not self._flight:
             self.pop_screen()
-        if not coupled(self._snapshot):
-            # What a page leaves is looked through where 0.2 s harm nobody; by itself it hardly is, see `running`.
-            self.set_timer(_AFTER_PAGE_S, gc.collect)
 
     def review_at(self, t: float) -> None:
         """Open the recording in the viewer at a moment, s on the clock of the flight."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from groundstation.messages import Severity
+from groundstation.tui import checks_computer as computer
 from groundstation.tui import checks_here as here
 from groundstation.tui import checks_vehicle as vehicle
 from groundstation.tui.check import Check
@@ -19,6 +20,7 @@ def checks(frame: Frame) -> list[Check]:
         vehicle.link_quality(frame),
         vehicle.identity(frame),
         vehicle.health(frame),
+        vehicle.transmitter(frame),
         vehicle.awake(frame),
         vehicle.position(frame),
         vehicle.home(frame),
@@ -27,6 +29,7 @@ def checks(frame: Frame) -> list[Check]:
         vehicle.speeds(frame),
         here.mission(frame),
         here.recording(frame),
+        computer.supply(frame.now),
         *vehicle.parameters(frame),
     ]
     return sorted(found, key=lambda check: -check.severity)

@@ -29,6 +29,8 @@ def device(frame: Frame) -> Check:
     if device is None or frame.age(device) > REPORT_STALE_S:
         return Check("haptic device", _DANGER, "no word from the pilot process", "wait, or see the log (F12)")
     name = words(device.name)
+    if frame.seeking:
+        return Check("haptic device", _DANGER, "not found yet", "wait, or plug it in and switch it on")
     if not device.present:
         return Check("haptic device", _DANGER, f"{name} is not there", "plug it in and switch it on")
     if not device.homed:

@@ -13,9 +13,12 @@ from groundstation.tui.frame import Frame
 from groundstation.tui.notes import words
 from groundstation.tui.rows import quantity, span_of_time
 from groundstation.vehicle.failsafes import verdict
-from groundstation.vehicle.profiles import profile_of
+from groundstation.vehicle.profiles import outdated, profile_of
 
 _OK, _CAUTION, _DANGER = Severity.INFO, Severity.WARNING, Severity.ALARM
+# The vehicle's own words are given as a reason for so long, s: PX4 tells why it cannot be armed once, on asking.
+_WORDS_S = 60.0
+_SAYS = b"Vehicle: "
 # An estimator needs about so long after it is switched on, s.
 _SETTLED_S = 10.0
 _CALIBRATED = {
@@ -67,6 +70,9 @@ def identity(frame: Frame) -> Check:
         return Check("vehicle", _CAUTION, f"{state}, untested", remedy)
     if not version:
         return Check("vehicle", _CAUTION, state, "wait until it tells its firmware")
+    if outdated(profile, version):
+        since = ".".join(map(str, profile.since))
+        return Check("vehicle", _CAUTION, f"{state}, older than {since}", "update its firmware")
     return Check("vehicle", _OK, state)
 
 
@@ -76,12 +82,28 @@ def health(frame: Frame) -> Check:
     if status is None or not status.connected:
         return Check("health", _CAUTION, "not known", "see the link")
     known = Health(status.health)
+    if not known & ~Health.TRANSMITTER:
+        return Check("health", _DANGER, "not told yet", "wait for the vehicle's telemetry")
     missing = [name for flag, name in _CALIBRATED.items() if flag not in known]
     if missing:
         return Check("health", _DANGER, f"not calibrated: {', '.join(missing)}", "calibrate the vehicle")
     if Health.ARMABLE not in known and not status.armed:
-        return Check("health", _CAUTION, "cannot be armed yet", "its reason is in the log (F12)")
+        why = _last_words(frame)
+        remedy = "mend what it says" if why else "wait; on arming it tells why, see the log (F12)"
+        return Check("health", _CAUTION, ": ".join(filter(None, ("cannot be armed yet", why))), remedy)
     return Check("health", _OK, "sensors calibrated, can be armed" if not status.armed else "armed")
+
+
+def transmitter(frame: Frame) -> Check:
+    """Return whether somebody can take over by hand."""
+    status = frame.snapshot.status
+    if status is None or not status.connected:
+        return Check("transmitter", _CAUTION, "not known", "see the link")
+    if Health.TRANSMITTER in Health(status.health):
+        return Check("transmitter", _OK, "heard by the vehicle")
+    if frame.run.simulated:
+        return Check("transmitter", _OK, "none, and none is needed")
+    return Check("transmitter", _CAUTION, "not heard: nobody can take over by hand", "switch it on")
 
 
 def awake(frame: Frame) -> Check:
@@ -125,10 +147,12 @@ def battery(frame: Frame) -> Check:
     share = status.battery if status is not None else math.nan
     if not math.isfinite(share):
         return Check("battery", _CAUTION, "the vehicle does not say", "look at the battery yourself")
+    assert status is not None
     severity = judge.battery(share)
-    return Check(
-        "battery", severity, quantity(100 * share, "%", 0), "charge or change it" if severity else ""
-    )
+    state = quantity(100 * share, "%", 0)
+    if math.isfinite(status.voltage):
+        state += f", {quantity(status.voltage, 'V', 1)}"
+    return Check("battery", severity, state, "charge or change it" if severity else "")
 
 
 def fence(frame: Frame) -> Check:
@@ -152,9 +176,10 @@ def speeds(frame: Frame) -> Check:
     told = tuple(status.speed_limits) if status is not None else (math.nan,) * 3
     profile = profile_of(status.autopilot) if status is not None else None
     if profile is None or not all(limit > 0.0 for limit in told):
-        return Check(
-            "speed limits", _DANGER, "the vehicle's own are not read", "wait; F9 reads its parameters"
-        )
+        read = profile is not None and all(name in frame.snapshot.parameters for name in profile.speeds)
+        state = "one of the vehicle's own is 0" if read else "the vehicle's own are not read"
+        remedy = "see its parameters below" if read else "wait; F9 reads its parameters"
+        return Check("speed limits", _DANGER, state, remedy)
     used = bounded(limits, (told[0], told[1], told[2]))
     state = (
         f"{used.horizontal_speed:.3g} m/s around, {used.vertical_speed:.3g} up, down; "
@@ -177,6 +202,18 @@ def parameters(frame: Frame) -> Iterator[Check]:
         judged = verdict(each, values)
         known = f" = {values[each.name]:g}" if each.name in values else ""
         yield Check(f"{each.name}{known}", judged.severity, judged.means, judged.remedy)
+
+
+def _last_words(frame: Frame) -> str:
+    """Return what the vehicle last complained of, if that is not long ago, or ""."""
+    return next(
+        (
+            words(event.text.removeprefix(_SAYS))
+            for event in reversed(frame.snapshot.events)
+            if event.text.startswith(_SAYS) and event.severity and frame.now - event.t < _WORDS_S
+        ),
+        "",
+    )
 
 
 def _health(frame: Frame) -> Health:

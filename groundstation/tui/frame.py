@@ -69,6 +69,7 @@ class Frame:
         judgement: Of the last flight that landed, or None before.
         alarms: What is wrong, as of the frame before.
         paint_hz: Frames painted a second, as the terminal takes them.
+        device_found: The haptic device has been there since the start.
     """
 
     snapshot: Snapshot
@@ -88,6 +89,7 @@ class Frame:
     judgement: Judgement | None = None
     alarms: Alarms = field(default_factory=Alarms)
     paint_hz: float = math.nan
+    device_found: bool = True
 
     @property
     def now(self) -> float:
@@ -107,6 +109,12 @@ class Frame:
     def pilot(self) -> PilotState | None:
         """The controller's state, or None where it is too old to be true still."""
         return self.snapshot.pilot if self.age(self.snapshot.pilot) <= PILOT_STALE_S else None
+
+    @property
+    def seeking(self) -> bool:
+        """The haptic device has not been found yet: what was never there is not gone."""
+        device = self.snapshot.device
+        return device is not None and not device.present and not self.device_found
 
     @property
     def force_limit(self) -> float:

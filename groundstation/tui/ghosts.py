@@ -13,6 +13,8 @@ from groundstation.tui.theme import Tone
 from groundstation.tui.view import View
 
 _TRAIL_S = 8.0
+# A dot of its way so often, s: they stand where they are, while a line dotted by length would crawl.
+_DOT_S = 0.1
 # Half its size on a map, dots, and in space, m.
 _DOTS, _SIZE_M = 3.0, 0.25
 _NAME = "ghost"
@@ -28,10 +30,13 @@ def draw_ghost(canvas: Canvas, view: View, frame: Frame, *, named: bool) -> None
         named: Say what it is.
     """
     track, elapsed = frame.run.ghost, _elapsed(frame)
-    if track is None or (here := ghost_at(track, elapsed)) is None:
+    if track is None or ghost_at(track, elapsed) is None:
         return
-    canvas.line(*view.dots(np.array(ghost_trail(track, elapsed, _TRAIL_S))), Tone.MUTED, gap=3)
-    x, y = (float(axis[0]) for axis in view.dots(np.array([here])))
+    dots = view.dots(np.array(ghost_trail(track, elapsed, _TRAIL_S)))
+    shares = np.linspace(0.0, 1.0, max(round(track.every_s / _DOT_S), 1), endpoint=False)
+    across, down = ((axis[:-1, None] + np.diff(axis)[:, None] * shares).ravel() for axis in dots)
+    canvas.plot(across, down, Tone.MUTED)
+    x, y = (float(axis[-1]) for axis in dots)
     canvas.line([x - _DOTS, x, x + _DOTS, x, x - _DOTS], [y, y - _DOTS, y, y + _DOTS, y], Tone.MUTED)
     if named:
         canvas.letters(int(x / 2) - len(_NAME) // 2, int((y + _DOTS) / 4) + 1, _NAME, Tone.MUTED)

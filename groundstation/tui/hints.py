@@ -30,6 +30,8 @@ def next_step(frame: Frame) -> str:
     """Say what the operator can do next."""
     snapshot = frame.snapshot
     status, pilot = snapshot.status, frame.pilot
+    if frame.seeking:
+        return "Looking for the haptic device …"
     if status is None or not status.connected:
         return f"Waiting for the vehicle at {frame.run.url} …"
     if not armed(snapshot):

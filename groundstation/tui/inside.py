@@ -28,6 +28,8 @@ _BEHIND_M, _ABOVE_M, _DOWN = 3.0, 1.5, -0.34
 # What is seen across the picture at zoom 1, rad.
 _ANGLE = math.radians(80.0)
 _GROUND_M, _DIM_M, _GRID_DIM_M, _HORIZON_M = 10.0, 12.0, 5.0, 2000.0
+_SKY = np.linspace(0.0, math.tau, 73)
+_SKYLINE = wireframe.path(np.stack([np.cos(_SKY), np.sin(_SKY), np.zeros(len(_SKY))], axis=1) * _HORIZON_M)
 _FENCE_POSTS = 16
 # This far around a vehicle nothing behind it is drawn, m.
 _FREE_M = 0.55
@@ -92,11 +94,9 @@ def draw_inside(
 def _standing(frame: Frame, eye: Camera, mission: Mission | None, fence: Fence) -> list[Lines]:
     """Return ground, horizon, route and goal, fence, obstacles and gates."""
     place = eye.place
-    angles = np.linspace(0.0, math.tau, 73)
-    skyline = np.stack([np.cos(angles), np.sin(angles), np.zeros(73)], axis=1) * _HORIZON_M + np.array(place)
     scene = [
         Lines(wireframe.ground(place, _GROUND_M), Tone.GRID, 3, far=_GRID_DIM_M),
-        Lines(wireframe.path(skyline), Tone.MUTED),
+        Lines(_SKYLINE + np.array(place), Tone.MUTED),
     ]
     if fence.radius > 0.0:
         scene.append(Lines(_fence(fence, max(place[2], 2.0)), Tone.OBSTACLE, 2))

@@ -25,7 +25,9 @@ from groundstation.training.guide import guide_of
 from groundstation.training.telling import Landings
 from groundstation.tui.acts import ACTS, BY_NAME, Act, Ask, coupled, in_air
 from groundstation.tui.checks import checks
+from groundstation.tui.checks_kept import ArmedChecks
 from groundstation.tui.choices import CHOICES, CHOICES_BY_NAME, Wishes
+from groundstation.tui.finding import DeviceWatch
 from groundstation.tui.frame import Frame, Reader, Supervisor, workspace
 from groundstation.tui.guarding import GuardWatch
 from groundstation.tui.hand import Hand, StickSender
@@ -55,6 +57,7 @@ class PlainFlight:
         hand: The on-screen stick's deflection, or None where another device is in use.
         director: Knows how the mission is going, asked anew each time; None without one.
         coach: Tells the trainee what to do instead, if there is one.
+        keep: Makes words an event, for the recording.
 
     Attributes:
         left: The operator wants to leave.
@@ -72,11 +75,14 @@ class PlainFlight:
         *,
         director: Callable[[], Director | None] = lambda: None,
         coach: LiveCoach | None = None,
+        keep: Callable[[str], None] = lambda _: None,
     ) -> None:
+        self._armed_checks = ArmedChecks(keep)
         self._director, self._coach = director, coach
         self._run, self._console, self._supervisor, self._tell = run, console, supervisor, tell
         self._hand = hand
-        self._answers, self._wishes, self._guard = Answers(), Wishes(), GuardWatch()
+        self._answers, self._wishes = Answers(), Wishes()
+        self._guard, self._device = GuardWatch(), DeviceWatch()
         self._track, self._history = Track(), History()
         self._asked: tuple[Callable[[], None], frozenset[str], float] | None = None
         self._confirmed_real = run.simulated
@@ -99,6 +105,7 @@ class PlainFlight:
             self._tell("Not confirmed: nothing was done.")
         self._coaching = self._coached(snapshot)
         self._tell_events(snapshot)
+        self._armed_checks.look(self._frame())
         status, pilot = snapshot.status, snapshot.pilot
         state = (status and (status.mode, status.armed, status.in_air), pilot and pilot.phase)
         if snapshot.t >= self._next_line or state != self._state:
@@ -233,6 +240,7 @@ class PlainFlight:
             stick=self._hand.share if self._hand is not None else None,
             hindrances={each.name: each.hindrance(snapshot) for each in (*ACTS, *CHOICES)},
             guarded_by=self._guard.look(snapshot),
+            device_found=self._device.look(snapshot),
             notes=tuple(self._answers.notes),
             track=self._track,
             history=self._history,
@@ -277,7 +285,11 @@ def fly_plainly(run: Run, bus: Bus, supervisor: Supervisor) -> int:
     follower = MissionFollower(run.mission, bus, run.par) if run.mission else None
     keeper = Keeper(run, follower.attempts) if follower else None
     hand = Hand() if stick is not None else None
-    coach = LiveCoach(run, lambda words: bus.event(Severity.INFO, words))
+
+    def keep(words: str) -> None:
+        bus.event(Severity.INFO, words)
+
+    coach = LiveCoach(run, keep)
     flight = PlainFlight(
         run,
         Console(bus, "plain"),
@@ -286,6 +298,7 @@ def fly_plainly(run: Run, bus: Bus, supervisor: Supervisor) -> int:
         hand,
         director=lambda: follower.director if follower is not None else None,
         coach=coach,
+        keep=keep,
     )
     keepalive = Keepalive(lambda: _send_stick(stick, hand, flight)) if stick is not None else None
     if keepalive is not None:

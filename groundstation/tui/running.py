@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import gc
 import sys
 from collections.abc import Callable
 
@@ -15,14 +14,13 @@ from groundstation.training.asking import Asker
 from groundstation.training.coach import LiveCoach
 from groundstation.training.follower import MissionFollower
 from groundstation.training.workload import Workload
+from groundstation.tui import memory
 from groundstation.tui.app import FlightApp
 from groundstation.tui.frame import Reader, Supervisor
 from groundstation.tui.hand import StickSender
 from groundstation.tui.hangup import HangupWatch
 from groundstation.tui.instructing import Instructing
 from groundstation.tui.wish import Ending
-
-_SWITCH_S = 0.001
 
 
 def run_screen(
@@ -36,6 +34,7 @@ def run_screen(
     keeper: Keeper | None = None,
     on_workload: Callable[[Workload], None] = lambda _: None,
     instructing: Instructing | None = None,
+    tell: Callable[[str], None] = lambda _: None,
 ) -> Ending:
     """Show the screen until the operator leaves; return how that was."""
     app = FlightApp(
@@ -48,19 +47,14 @@ def run_screen(
         keeper=keeper,
         instructing=instructing,
         on_workload=on_workload,
+        tell=tell,
     )
-    # A collection that looks through all the modules again takes 0.2 s, and a stick is stale after 0.1 s.
-    gc.collect()
-    gc.freeze()
-    # Nor may painting keep the stick's thread waiting: it asks for its turn and gets it within a millisecond, and the
-    # young objects of some thousand frames are looked through before all are.
-    sys.setswitchinterval(_SWITCH_S)
-    gc.set_threshold(2_000, 20, 1_000)
     watch = HangupWatch(sys.stdin.fileno())
     try:
         code = app.run()
     finally:
         watch.stop()
+        memory.leave()
     return Ending((app.return_code or 0) if code is None else code, app.wish)
 
 
@@ -72,9 +66,12 @@ def fly_on_screen(run: Run, bus: Bus, supervisor: Supervisor) -> Ending:
     follower = MissionFollower(run.mission, bus, run.par) if run.mission else None
     keeper = Keeper(run, follower.attempts) if follower else None
 
+    def tell(words: str) -> None:
+        bus.event(Severity.INFO, words)
+
     def on_workload(workload: Workload) -> None:
         # As an event it stands in the recording.
-        bus.event(Severity.INFO, workload.words)
+        tell(workload.words)
         if keeper:
             keeper.keep_workload(workload)
 
@@ -85,10 +82,11 @@ def fly_on_screen(run: Run, bus: Bus, supervisor: Supervisor) -> Ending:
             supervisor,
             stick,
             follower=follower,
-            coach=LiveCoach(run, lambda words: bus.event(Severity.INFO, words)),
+            coach=LiveCoach(run, tell),
             keeper=keeper,
             on_workload=on_workload,
             instructing=Instructing(Asker(bus, "instructor") if run.simulated else None),
+            tell=tell,
         )
     finally:
         for words in keeper.close() if keeper else ():

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -130,15 +131,21 @@ def label_obstacles(canvas: Canvas, view: View, mission: Mission | None) -> None
 def ring(canvas: Canvas, view: View, circle: tuple[float, float, float], tone: Tone, gap: int = 1) -> None:
     """Draw a circle of (across, upward, radius), m; of its dots only every so many, for a dotted one."""
     across, upward, radius = circle
-    count = int(min(max(math.tau * radius / view.scale, 12), 2000))
+    right, up = _circle(int(min(max(math.tau * radius / view.scale, 12), 2000)), gap)
+    canvas.plot(view.x(across + radius * right), view.y(upward + radius * up), tone)
+
+
+@lru_cache(maxsize=16)
+def _circle(count: int, gap: int) -> tuple[Floats, Floats]:
+    """Return every so many of so many points on a circle of radius 1; most rings stay as large as they are."""
     angles = np.arange(0, count, gap) * (math.tau / count)
-    canvas.plot(view.x(across + radius * np.cos(angles)), view.y(upward + radius * np.sin(angles)), tone)
+    return np.cos(angles), np.sin(angles)
 
 
 def cross(canvas: Canvas, x: float, y: float, arm: int, tone: Tone) -> None:
     """Draw a cross of so long arms, dots."""
-    canvas.line([x - arm, x + arm], [y, y], tone)
-    canvas.line([x, x], [y - arm, y + arm], tone)
+    # What is not a number ends a line.
+    canvas.line([x - arm, x + arm, math.nan, x, x], [y, y, math.nan, y - arm, y + arm], tone)
 
 
 def silhouette(part: Primitive, view: View) -> Floats:

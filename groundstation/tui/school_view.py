@@ -10,6 +10,7 @@ from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
 from textual.containers import Container, Vertical, VerticalScroll
 from textual.message import Message
+from textual.theme import Theme
 from textual.widgets import OptionList, Static
 from textual.widgets.option_list import Option
 
@@ -87,8 +88,12 @@ class SchoolView(Vertical):
         self.query_one("#course", OptionList).focus()
         if self.report.words:
             self.app.notify(self.report.words, severity="warning", timeout=8.0, markup=False)
-        self.watch(self.app, "theme", self._paint, init=False)
+        self.app.theme_changed_signal.subscribe(self, self._paint)
         self.call_after_refresh(self._paint)
+
+    def on_unmount(self) -> None:
+        """The application lives on, and would keep what it calls back."""
+        self.app.theme_changed_signal.unsubscribe(self)
 
     def on_resize(self) -> None:
         """Fit the lines to the new width."""
@@ -141,7 +146,7 @@ class SchoolView(Vertical):
         self.query_one("#course", OptionList).clear_options()
         self._paint()
 
-    def _paint(self) -> None:
+    def _paint(self, _theme: Theme | None = None) -> None:
         """Write all anew; what was chosen stays chosen."""
         styles, course = styles_of(self.app.theme), self.query_one("#course", OptionList)
         standing = self.report.standing

@@ -6,6 +6,7 @@ World ENU, m. Lines are segments, shape (n, 2, 3).
 from __future__ import annotations
 
 import math
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -169,12 +170,16 @@ def ground(eye: tuple[float, float, float], reach: float) -> Floats:
     """
     step = next((step for step in (1.0, 2.0, 5.0, 10.0, 20.0, 50.0) if 6 * step >= reach), 100.0)
     middle = [round(value / step) * step for value in eye[:2]]
-    count = math.floor(reach / step)
+    return _grid(step, math.floor(reach / step)) + np.array([*middle, 0.0])
+
+
+@lru_cache(maxsize=4)
+def _grid(step: float, count: int) -> Floats:
+    """Return a level grid of so many steps to each side of the origin, in pieces of a step, m."""
     ticks: Floats = np.arange(-count, count + 1, dtype=np.float64) * step
     across, along = (axis.ravel() for axis in np.meshgrid(ticks, ticks[:-1]))
     flat = np.zeros_like(across)
     starts = np.stack([across, along, flat], axis=1)
     ends = np.stack([across, along + step, flat], axis=1)
     north = np.stack([starts, ends], axis=1)
-    lines = np.concatenate([north, north[:, :, [1, 0, 2]]])
-    return np.asarray(lines + np.array([middle[0], middle[1], 0.0]), dtype=float)
+    return np.concatenate([north, north[:, :, [1, 0, 2]]])

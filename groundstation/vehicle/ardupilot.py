@@ -20,6 +20,8 @@ _CENTIMETRES = 0.01
 
 # GUIDED, BRAKE and RTL. Landing is a command of its own. LOITER obeys the sticks, so nobody is asked to hold there.
 MODES = frozenset({(4.0, 0.0), (17.0, 0.0), (6.0, 0.0)})
+# The first with GUID_TIMEOUT.
+SINCE = (4, 1)
 
 
 def _timeout(value: float) -> Verdict:

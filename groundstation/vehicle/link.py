@@ -6,8 +6,6 @@ bus ◄──state, obstacles, status, answers, events── VehicleView, Obstac
 
 from __future__ import annotations
 
-import contextlib
-import ctypes
 import math
 import queue
 import threading
@@ -18,11 +16,11 @@ from pathlib import Path
 import mavsdk
 from mavsdk import Configuration, Mavsdk, System
 
+from groundstation import heap
 from groundstation.bus import Bus
 from groundstation.child import Lifeline, run_child
-from groundstation.conditions import Conditions
+from groundstation.clock import Every
 from groundstation.errors import InputError
-from groundstation.failsafe import BY_FAULT, Fault
 from groundstation.frames import Vector4
 from groundstation.messages import (
     ANSWER_TEXT,
@@ -47,6 +45,7 @@ from groundstation.run import Run
 from groundstation.vehicle.asleep import Sleep
 from groundstation.vehicle.commander import STEERING, Answer, Commander
 from groundstation.vehicle.gate import Gate
+from groundstation.vehicle.hearing import Hearing
 from groundstation.vehicle.identity import Identity
 from groundstation.vehicle.interventions import Interventions
 from groundstation.vehicle.obstacle_view import ObstacleView
@@ -56,7 +55,7 @@ from groundstation.vehicle.profiles import profile_of
 from groundstation.vehicle.pump import Pump
 from groundstation.vehicle.round_trip import RoundTrip
 from groundstation.vehicle.signed_times import TimesKeeper, read_times
-from groundstation.vehicle.signing import Refusals, Signing, read_key
+from groundstation.vehicle.signing import Signing, read_key
 from groundstation.vehicle.telemetry import Notes, VehicleView
 from groundstation.vehicle.tlog import TlogWriter
 from groundstation.vehicle.transport import TransportError, open_transport, parse_url
@@ -70,8 +69,8 @@ _DISCOVERY_S = 0.05
 _DEFAULT_TAKEOFF_M = 2.0
 _REASON_S = 1.5
 _LEAVE_S = 0.2
-_SILENT = BY_FAULT[Fault.LINK_SILENT]
-_M_ARENA_MAX = -8
+# A command that has waited for longer, while this process stood still, is nobody's wish any more.
+_LATE_S = 2.0
 # Three heartbeats: a vehicle whose heartbeats tell no autopilot that is known has none.
 _INTRODUCTION_S = 3.0
 
@@ -130,8 +129,7 @@ class Link:
         self._denials: deque[tuple[float, str]] = deque(maxlen=4)
         self._next_status = 0.0
         self._next_discovery = 0.0
-        self._silent = False
-        self._refusals = Refusals()
+        self._hearing = Hearing(pump, run.settings.safety)
 
     def turn(self) -> None:
         """Pass records once around; never waits."""
@@ -151,7 +149,7 @@ class Link:
         self._interventions.turn(now)
         self._pass_on_sights()
         if self._desk:
-            for answer in self._desk.pass_on(now, self._view.boots):
+            for answer in self._desk.pass_on(now, self._view.boots, self._hearing.absences):
                 self._tell(answer, now)
         self._pass_on_notes(now)
         if now >= self._next_status or self._changed():
@@ -207,6 +205,7 @@ class Link:
         self._identity = Identity(system, time.monotonic)
         self._interventions.attach(system, self._gate, lambda: time.monotonic() - self._pump.heard_t)
         self._view.attach(system, self._run.settings.rates.telemetry)
+        self._pump.watch(system.get_system_id())
         self._status.system_id, self._status.autopilot = system.get_system_id(), system.autopilot_type()
         kind = profile.label if profile else "unknown autopilot"
         words = f"Vehicle {self._status.system_id}, {kind}, found on {self._run.url}."
@@ -245,6 +244,10 @@ class Link:
             return
         if self._commander is None or self._desk is None:
             self._answer(number, kind, ok=False, text="no vehicle is connected", now=now)
+            return
+        if (late := now - command.t) > _LATE_S and kind is not CommandKind.HOLD:
+            text = f"the link stood still for {late:.0f} s since; ask again"
+            self._answer(number, kind, ok=False, text=text, now=now)
             return
         if kind in PARAMETER_COMMANDS:
             if why := self._desk.obey(command, armed=self._view.armed or self._view.in_air):
@@ -336,22 +339,14 @@ class Link:
             status.component = self._identity.component
             status.firmware = fit(self._identity.firmware, FIRMWARE_TEXT)
         self._statuses.send(status)
-        self._watch_silence(now)
-        if words := self._refusals.news(now, self._pump.refused, heard=bool(self._pump.heard_t)):
-            self._bus.event(Severity.WARNING, words)
-
-    def _watch_silence(self, now: float) -> None:
-        seen = Conditions(silence=now - self._pump.heard_t if self._pump.heard_t else 0.0)
-        silent = _SILENT.holds(seen, self._run.settings.safety)
-        if silent != self._silent:
-            self._silent = silent
-            words = _SILENT.say(seen) if silent else "The vehicle is heard again."
-            self._bus.event(_SILENT.severity if silent else Severity.INFO, words)
+        for severity, words in self._hearing.news(now):
+            self._bus.event(severity, words)
 
 
 def body(run: Run, bus: Bus, lifeline: Lifeline) -> None:
     """Run the link until the lifeline ends."""
-    _take_one_arena()
+    heap.take_one_arena()
+    give_back = Every(heap.GIVE_BACK_S)
     notes: Notes = queue.SimpleQueue()
     # It complains of a connection that is about to come; its lines count from when that is there. Subscribing
     # anew then would free the callback that a thread of MAVSDK's may be in.
@@ -379,6 +374,8 @@ def body(run: Run, bus: Bus, lifeline: Lifeline) -> None:
     try:
         while lifeline.holds():
             link.turn()
+            if give_back.due(time.monotonic()):
+                heap.give_back()
             link.wait()
         link.leave()
     finally:
@@ -391,15 +388,6 @@ def body(run: Run, bus: Bus, lifeline: Lifeline) -> None:
         if times:
             times.close()
         mavsdk.log_unsubscribe()
-
-
-def _take_one_arena() -> None:
-    """Have all threads take their memory from one place, where the C library lets them (mallopt(3)).
-
-    glibc gives each its own. What MAVSDK's threads take there and ours give back is not found again: 2 MB a minute.
-    """
-    with contextlib.suppress(AttributeError, OSError):
-        ctypes.CDLL(None).mallopt(_M_ARENA_MAX, 1)
 
 
 def _open_signing(run: Run, notes: Notes) -> tuple[Signing | None, TimesKeeper | None]:

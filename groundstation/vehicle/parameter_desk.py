@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 
 from mavsdk import System
@@ -9,13 +10,17 @@ from mavsdk import System
 from groundstation.bus import Bus
 from groundstation.clock import Every
 from groundstation.frames import Vector3
-from groundstation.messages import PARAMETER, PARAMETER_TEXT, Command, CommandKind, Parameter, fit
+from groundstation.messages import PARAMETER, PARAMETER_TEXT, Command, CommandKind, Parameter, Severity, fit
 from groundstation.vehicle.commander import Answer
+from groundstation.vehicle.failsafes import Judged
 from groundstation.vehicle.gate import Gate
-from groundstation.vehicle.parameters import Parameters, cannot_be_set
+from groundstation.vehicle.overheard import Overheard
+from groundstation.vehicle.parameters import Parameters, Read, cannot_be_set
 from groundstation.vehicle.profiles import Profile, speed_limits, unsafe_for
 
 _AGAIN_S = 1.0
+# A change is told once, and may be lost on its way: all that are judged are asked for this often, s.
+_ASK_S = 30.0
 PARAMETER_COMMANDS = frozenset({CommandKind.PARAMETERS, CommandKind.SET_PARAMETER})
 
 
@@ -31,12 +36,15 @@ class ParameterDesk:
 
     def __init__(self, bus: Bus, system: System, gate: Gate, profile: Profile | None) -> None:
         self._profile = profile
-        self._parameters = Parameters(system, gate, profile.judged if profile else ())
+        self._judges = {each.name: each for each in profile.judged} if profile else {}
+        self._parameters = Parameters(system, gate, tuple(self._judges.values()))
+        self._overheard = Overheard(system, bytewise=profile.bytewise) if profile else None
+        self._bus = bus
         self._publisher = bus.publisher(PARAMETER)
         self._whole: dict[str, bool] = {}
         self._judged: dict[str, Parameter] = {}
-        self._again = Every(_AGAIN_S)
-        self._boots = 0
+        self._again, self._ask = Every(_AGAIN_S), Every(_ASK_S)
+        self._boots = self._absences = self._total = 0
 
     @property
     def unsafe(self) -> str:
@@ -53,7 +61,7 @@ class ParameterDesk:
         if command.kind == CommandKind.PARAMETERS:
             self._parameters.fetch_all(command.number)
             return ""
-        name, amount = command.name.decode(), command.amount
+        name, amount = command.name.decode(errors="replace"), command.amount
         whole = self._whole.get(name)
         if whole is None:
             return f"{name} has not been read; read the parameters first"
@@ -61,26 +69,53 @@ class ParameterDesk:
             self._parameters.set(command.number, name, amount, whole=whole)
         return why
 
-    def pass_on(self, now: float, boots: int) -> Iterator[Answer]:
-        """Send what was read, and yield the answers; a vehicle that has started anew is read anew."""
+    def pass_on(self, now: float, boots: int, absences: int) -> Iterator[Answer]:
+        """Send what was read, and yield the answers.
+
+        Args:
+            now: Monotonic s.
+            boots: How often the vehicle has started anew; then all is read anew.
+            absences: How often it was not heard for a while; then those that are judged are asked for again.
+        """
         if boots != self._boots:
             self._boots = boots
             self._parameters.forget()
             self._judged.clear()
+        for name, value in self._overheard.take() if self._overheard else ():
+            if name in self._judges:
+                self._hear(self._judges[name], value, now)
         while not self._parameters.read.empty():
             read = self._parameters.read.get()
             self._whole[read.name] = read.whole
-            record = Parameter(t=now, value=read.value, whole=read.whole, count=read.total)
-            record.name = fit(read.name, PARAMETER_TEXT)
-            self._publisher.send(record)
-            if read.name in self._parameters.judged:
-                self._judged[read.name] = record
+            self._send(read, now)
+        if self._ask.due(now) or absences != self._absences:
+            self._absences = absences
+            self._parameters.ask_again()
         if self._again.due(now):
             # Who has come meanwhile gets to know what they are.
             for record in self._judged.values():
                 self._publisher.send(record)
         while not self._parameters.answers.empty():
             yield self._parameters.answers.get()
+
+    def _hear(self, judged: Judged, value: float, now: float) -> None:
+        """Judge anew what the vehicle told, and say so where it is not what it was."""
+        before = self._parameters.hear(judged.name, value)
+        if before == value or (before is not None and math.isnan(before) and math.isnan(value)):
+            return
+        self._judged[judged.name] = self._send(Read(judged.name, value, judged.whole), now)
+        if before is not None:
+            found = judged.judge(value)
+            remedy = f"; {found.remedy}" if found.remedy else ""
+            words = f"The vehicle's {judged.name} is {value:g} now, was {before:g}: {found.means}{remedy}."
+            self._bus.event(max(found.severity, Severity.WARNING), words)
+
+    def _send(self, read: Read, now: float) -> Parameter:
+        self._total = read.total or self._total
+        record = Parameter(t=now, value=read.value, whole=read.whole, count=self._total)
+        record.name = fit(read.name, PARAMETER_TEXT)
+        self._publisher.send(record)
+        return record
 
     def close(self) -> bool:
         """End the thread; say whether MAVSDK may be taken away now."""

@@ -1,6 +1,7 @@
 """The vehicle's parameters through MAVSDK: its calls wait for the vehicle, so a thread of their own makes them.
 
-What the thread reads and sets comes out of queues; the link's loop never waits.
+What the thread reads and sets comes out of queues; the link's loop never waits. Those that are judged are taken from
+what the vehicle tells, see `groundstation.vehicle.overheard`: in its order, and when somebody else sets them, too.
 """
 
 from __future__ import annotations
@@ -45,7 +46,7 @@ class Read(NamedTuple):
 
 
 class Parameters:
-    """Reads and sets parameters on a thread; those that are judged are read first, and until they are known.
+    """Reads and sets parameters on a thread; those that are judged are asked for first, and until they are heard.
 
     Args:
         system: The vehicle.
@@ -54,13 +55,14 @@ class Parameters:
 
     Attributes:
         read, answers: What came since they were last emptied.
-        judged: Values of those that are judged, by name.
+        judged: Values of those that are judged, by name; only the link's loop changes it.
     """
 
     def __init__(self, system: System, gate: Gate, wanted: tuple[Judged, ...]) -> None:
         self._param = Param(system)
         self._gate = gate
         self._wanted = {each.name: each for each in wanted}
+        self._due = frozenset(self._wanted)
         self._work: queue.SimpleQueue[Callable[[], None] | None] = queue.SimpleQueue()
         self._over = threading.Event()
         self.read: queue.SimpleQueue[Read] = queue.SimpleQueue()
@@ -77,9 +79,21 @@ class Parameters:
         """Set a parameter, and read it back."""
         self._work.put(lambda: self._set(number, name, amount, whole=whole))
 
+    def hear(self, name: str, value: float) -> float | None:
+        """Take what the vehicle told of a parameter that is judged; return what it was before, or None."""
+        before = self.judged.get(name)
+        self.judged = self.judged | {name: value}
+        self._due -= {name}
+        return before
+
     def forget(self) -> None:
         """The vehicle has started anew: what was read need not be true any more."""
         self.judged = {}
+        self.ask_again()
+
+    def ask_again(self) -> None:
+        """Ask for all that are judged: a change may have been told while nobody could hear it."""
+        self._due = frozenset(self._wanted)
         self._work.put(lambda: None)
 
     def close(self) -> bool:
@@ -92,22 +106,19 @@ class Parameters:
     def _run(self) -> None:
         next_look = 0.0
         while not self._over.is_set():
-            if time.monotonic() >= next_look and self._missing():
+            if time.monotonic() >= next_look and self._due:
                 self._read_judged()
                 next_look = time.monotonic() + _AGAIN_S
             try:
-                work = self._work.get(timeout=_AGAIN_S / 4 if self._missing() else None)
+                work = self._work.get(timeout=_AGAIN_S / 4 if self._due else None)
             except queue.Empty:
                 continue
             if work is not None:
                 work()
 
-    def _missing(self) -> bool:
-        return len(self.judged) < len(self._wanted)
-
     def _read_judged(self) -> None:
         for name, each in self._wanted.items():
-            if name not in self.judged and not self._over.is_set():
+            if name in self._due and not self._over.is_set():
                 try:
                     value = self._value(name, whole=each.whole)
                 except ParamError as error:
@@ -115,14 +126,14 @@ class Parameters:
                     if error.result is ParamResult.TIMEOUT:
                         return
                 else:
-                    self._take(Read(name, value, each.whole))
+                    self.read.put(Read(name, value, each.whole))
 
     def _fetch_all(self, number: int) -> None:
         every = self._param.get_all_params()
         found = [Read(each.name, float(each.value), whole=True) for each in every.int_params]
         found += [Read(each.name, float(each.value), whole=False) for each in every.float_params]
         for each in found:
-            self._take(each._replace(total=len(found)))
+            self.read.put(each._replace(total=len(found)))
         why = "" if found else "the vehicle told no parameter; check the link"
         self.answers.put(Answer(number, CommandKind.PARAMETERS, bool(found), why))
 
@@ -134,7 +145,7 @@ class Parameters:
                 self._param.set_param_int(name, int(amount))
             else:
                 self._param.set_param_float(name, amount)
-            self._take(Read(name, self._value(name, whole=whole), whole))
+            self.read.put(Read(name, self._value(name, whole=whole), whole))
         except ParamError as error:
             why = _WORDS.get(error.result, str(error.result.name).replace("_", " ").lower())
             self.answers.put(Answer(number, kind, ok=False, why=f"{name}: {why}"))
@@ -143,11 +154,6 @@ class Parameters:
 
     def _value(self, name: str, *, whole: bool) -> float:
         return float(self._param.get_param_int(name) if whole else self._param.get_param_float(name))
-
-    def _take(self, read: Read) -> None:
-        if read.name in self._wanted:
-            self.judged = self.judged | {read.name: read.value}
-        self.read.put(read)
 
 
 def cannot_be_set(amount: float, *, whole: bool, armed: bool) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from typing import NamedTuple
 
@@ -20,6 +21,8 @@ class Profile(NamedTuple):
         speeds: Names of those that bound the speed: around, up, down.
         unit: That they are in, m/s.
         modes: Custom modes, main and sub, that it is asked for.
+        bytewise: A whole number's bits travel in a parameter's float; else the float has its value.
+        since: The oldest firmware, major and minor, whose parameters and modes are those that are known here.
         tested: It has been flown with this program, if only a simulation of it.
     """
 
@@ -28,6 +31,8 @@ class Profile(NamedTuple):
     speeds: tuple[str, str, str]
     unit: float
     modes: frozenset[tuple[float, float]]
+    bytewise: bool
+    since: tuple[int, int]
     tested: bool
 
     @property
@@ -37,9 +42,18 @@ class Profile(NamedTuple):
 
 
 PROFILES: Mapping[Autopilot, Profile] = {
-    Autopilot.PX4: Profile("PX4", px4.JUDGED, px4.SPEEDS, 1.0, px4.MODES, tested=True),
+    Autopilot.PX4: Profile(
+        "PX4", px4.JUDGED, px4.SPEEDS, 1.0, px4.MODES, bytewise=True, since=px4.SINCE, tested=True
+    ),
     Autopilot.ARDUPILOT: Profile(
-        "ArduPilot", ardupilot.JUDGED, ardupilot.SPEEDS, 0.01, ardupilot.MODES, tested=False
+        "ArduPilot",
+        ardupilot.JUDGED,
+        ardupilot.SPEEDS,
+        0.01,
+        ardupilot.MODES,
+        bytewise=False,
+        since=ardupilot.SINCE,
+        tested=False,
     ),
 }
 _UNKNOWN = (
@@ -52,14 +66,24 @@ def profile_of(autopilot: int) -> Profile | None:
     return next((profile for kind, profile in PROFILES.items() if kind == autopilot), None)
 
 
+def outdated(profile: Profile, firmware: str) -> bool:
+    """Say whether a firmware, as in 1.15.2 or 1.16.0 (beta), is older than what is known; unknown is not old."""
+    numbers = [part for part in firmware.partition(" ")[0].split(".")[:2] if part.isdecimal()]
+    return len(numbers) == 2 and (int(numbers[0]), int(numbers[1])) < profile.since
+
+
 def unsafe_for(profile: Profile | None, values: Mapping[str, float]) -> str:
     """Return why a vehicle's parameters keep the hand from being coupled, or ""."""
     return _UNKNOWN if profile is None else unsafe(profile.judged, values)
 
 
 def speed_limits(profile: Profile | None, values: Mapping[str, float]) -> Vector3:
-    """Return the largest speeds that a vehicle allows, m/s: around, up, down; 0 where that is not known."""
+    """Return the largest speeds that a vehicle allows, m/s: around, up, down; 0 where that is not known.
+
+    What is no speed, as a negative one, is not known; preflight tells what is wrong with it.
+    """
     if profile is None:
         return 0.0, 0.0, 0.0
-    around, up, down = (values.get(name, 0.0) * profile.unit for name in profile.speeds)
+    told = (values.get(name, 0.0) * profile.unit for name in profile.speeds)
+    around, up, down = (speed if math.isfinite(speed) and speed > 0.0 else 0.0 for speed in told)
     return around, up, down

@@ -24,6 +24,9 @@ if TYPE_CHECKING:
     from mavsdk import Mavsdk
 
 _SETUP_SIGNING = 256
+# PARAM_REQUEST_READ and _LIST, PARAM_SET, and the same of PARAM_EXT: whoever asks a station for its parameters. It
+# has none, and MAVSDK's answer to a name that is no text goes to the terminal.
+_NOT_FOR_STATIONS = frozenset({20, 21, 23, 320, 321, 323})
 _WINDOW_S = 5.0
 _HALF = 128
 
@@ -79,8 +82,10 @@ class Pump:
         signing: Signs what leaves and judges what comes; None where nothing is signed and everything heard.
 
     Attributes:
-        heard_t: When the last frame came of a system that has introduced itself by a heartbeat; 0 before.
+        heard_t: When the last frame came of the vehicle, or before that is known of any system that has introduced
+            itself by a heartbeat; 0 before.
         refused: How many frames were not heard, for their signature.
+        others: Systems that say they are vehicles and are not the one that is watched.
     """
 
     def __init__(
@@ -100,11 +105,13 @@ class Pump:
         self._parser.robust_parsing = True
         self._losses = Losses()
         self._known: set[int] = set()
+        self._vehicle = 0
         self._lock = threading.Lock()
         self._running = True
         self._thread: threading.Thread | None = None
         self.heard_t = 0.0
         self.refused = 0
+        self.others: frozenset[int] = frozenset()
 
     def start(self, mavsdk: Mavsdk) -> None:
         """Connect MAVSDK and begin."""
@@ -120,6 +127,10 @@ class Pump:
         if self._thread is not None:
             self._thread.join()
         self._transport.close()
+
+    def watch(self, system: int) -> None:
+        """Watch this system only: another station that is heard on the same link is not the vehicle."""
+        self._vehicle = system
 
     def loss(self) -> float:
         """Return the share of frames lost in the last seconds, 0 to 1."""
@@ -149,21 +160,29 @@ class Pump:
                 if self._signing and not self._signing.trusts(frame):
                     self.refused += message_number(frame) not in NEVER_SIGNED
                     continue
-                mavsdk.pass_received_raw_bytes(legible(frame))
-                self._watch(frame, introduces=message.get_type() == "HEARTBEAT")
+                if message_number(frame) not in _NOT_FOR_STATIONS:
+                    mavsdk.pass_received_raw_bytes(legible(frame))
+                self._watch(
+                    frame, message if isinstance(message, mavlink.MAVLink_heartbeat_message) else None
+                )
 
-    def _watch(self, frame: bytes, *, introduces: bool) -> None:
+    def _watch(self, frame: bytes, heartbeat: mavlink.MAVLink_heartbeat_message | None) -> None:
         now = self._clock()
         sequence, system, component = origin(frame)
-        if introduces:
+        if heartbeat is not None:
             self._known.add(system)
+            # A part of a vehicle, and another station, have no autopilot.
+            if self._vehicle not in {0, system} and heartbeat.autopilot != mavlink.MAV_AUTOPILOT_INVALID:
+                self.others |= {system}
         # Noise on a serial line can look like a frame, but hardly like one of a system that is known.
         if system not in self._known:
+            return
+        self._log(frame)
+        if system != (self._vehicle or system):
             return
         self.heard_t = now
         with self._lock:
             self._losses.count(now, system, component, sequence)
-        self._log(frame)
 
     def _log(self, frame: bytes) -> None:
         """Log a frame; nothing that tells the key or helps to guess it is in a log."""

@@ -106,6 +106,7 @@ class VehicleView:
         telemetry.subscribe_in_air(self._on_in_air)
         telemetry.subscribe_battery(self._on_battery)
         telemetry.subscribe_health(self._on_health)
+        telemetry.subscribe_rc_status(self._on_transmitter)
         telemetry.subscribe_status_text(self._on_text)
         telemetry.set_rate_position_velocity_ned_async(rate, _ignore)
         telemetry.set_rate_attitude_euler_async(rate, _ignore)
@@ -197,7 +198,11 @@ class VehicleView:
             | Health.GLOBAL_POSITION * bool(health.is_global_position_ok)
             | Health.HOME * bool(health.is_home_position_ok)
             | Health.ARMABLE * bool(health.is_armable)
+            | self.health & Health.TRANSMITTER
         )
+
+    def _on_transmitter(self, heard: plugin.RcStatus, _: object) -> None:
+        self.health = self.health & ~Health.TRANSMITTER | Health.TRANSMITTER * bool(heard.is_available)
 
     def _on_text(self, text: plugin.StatusText, _: object) -> None:
         if text.type >= _ALARMING:

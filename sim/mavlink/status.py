@@ -114,6 +114,9 @@ class Status:
         health = _SENSORS
         if not autopilot.fence_breach:
             health |= m.MAV_SYS_STATUS_GEOFENCE
+        if self._manual.channels:
+            present |= m.MAV_SYS_STATUS_SENSOR_RC_RECEIVER
+            health |= m.MAV_SYS_STATUS_SENSOR_RC_RECEIVER
         if "gps" in self._sim.failed:
             health &= ~m.MAV_SYS_STATUS_SENSOR_GPS
         if not self._sim.estimate.valid_position:

@@ -8,7 +8,6 @@ from typing import ClassVar
 from textual import events
 from textual.app import ComposeResult, SystemCommand
 from textual.binding import Binding, BindingType
-from textual.containers import Horizontal, Vertical
 from textual.screen import Screen
 from textual.widget import Widget
 
@@ -19,6 +18,7 @@ from groundstation.tui.hand import Hand
 from groundstation.tui.widgets.altitude import Altitude
 from groundstation.tui.widgets.attitude import Attitude
 from groundstation.tui.widgets.banner import Banner
+from groundstation.tui.widgets.composed import Across, Composed, Down
 from groundstation.tui.widgets.curves import Curves
 from groundstation.tui.widgets.force import Force
 from groundstation.tui.widgets.happenings import Happenings
@@ -89,7 +89,7 @@ def _bindings() -> list[BindingType]:
     ]
 
 
-class FlightScreen(Screen[None]):
+class FlightScreen(Screen[None], Composed):  # pyright: ignore[reportIncompatibleMethodOverride] - Textual's
     """The instruments, laid out once and then only painted.
 
     Args:
@@ -118,22 +118,22 @@ class FlightScreen(Screen[None]):
         yield FlightLine(id="line")
         yield Banner(id="banner")
         yield self._pages
-        with Horizontal(id="body"):
-            with Vertical(id="where"):
-                with Horizontal(id="place"):
+        with Across(id="body"):
+            with Down(id="where"):
+                with Across(id="place"):
                     yield self._map
                     yield Altitude(id="altitude")
-                with Horizontal(id="below"):
+                with Across(id="below"):
                     yield Attitude(id="attitude")
                     yield Happenings(id="events")
-            with Vertical(id="hand"):
+            with Down(id="hand"):
                 yield Numbers(id="numbers")
                 yield self._stick
                 yield Force(id="force")
                 yield Tracking(id="tracking")
                 yield Velocity(id="velocity")
                 yield System(id="system")
-            with Vertical(id="story"):
+            with Down(id="story"):
                 yield Mission(id="mission")
                 yield Curves(id="curves")
         yield Keys(id="keys")

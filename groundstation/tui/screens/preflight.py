@@ -12,18 +12,14 @@ from groundstation.messages import Severity
 from groundstation.tui.buttons import button_map, held, unmapped
 from groundstation.tui.check import Check
 from groundstation.tui.checks import checks
+from groundstation.tui.checks_told import MARKS, NAME_WIDTH, cautions, counted, verdict
 from groundstation.tui.frame import Frame
 from groundstation.tui.lines import Lines
 from groundstation.tui.rows import Row, wrapped
 from groundstation.tui.screens.page import Page
 from groundstation.tui.theme import Tone
 
-_MARKS = {
-    Severity.INFO: ("✓", Tone.OK),
-    Severity.WARNING: ("▲", Tone.WARN),
-    Severity.ALARM: ("■", Tone.FAULT),
-}
-_NAME = 23
+_TONES = {Severity.INFO: Tone.OK, Severity.WARNING: Tone.WARN, Severity.ALARM: Tone.FAULT}
 # From here on the remedy stands beside the state.
 _WIDE = 110
 
@@ -42,7 +38,7 @@ class Preflight(Page):
 
 def _rows(frame: Frame, width: int) -> list[Row]:
     found = checks(frame)
-    rows: list[Row] = [_total([check.severity for check in found]), []]
+    rows: list[Row] = [_total(found), []]
     for check in found:
         rows += _told(check, width)
     return [*rows, [], *_buttons(frame)]
@@ -50,34 +46,26 @@ def _rows(frame: Frame, width: int) -> list[Row]:
 
 def _told(check: Check, width: int) -> Iterator[Row]:
     """Yield a check's rows: on a wide screen one, else the remedy below the state, and none is cut."""
-    mark, tone = _MARKS[check.severity]
-    head: Row = [(f"{mark} ", tone), (check.name.ljust(_NAME), Tone.STRONG)]
+    head: Row = [
+        (f"{MARKS[check.severity]} ", _TONES[check.severity]),
+        (check.name.ljust(NAME_WIDTH), Tone.STRONG),
+    ]
     if width >= _WIDE:
         remedy: Row = [(f"  → {check.remedy}", Tone.WARN)] if check.remedy else []
         yield [*head, (f" {check.state}", Tone.TEXT), *remedy]
         return
-    blank: Row = [(" " * (_NAME + 2), Tone.TEXT)]
-    room = width - _NAME - 3
+    blank: Row = [(" " * (NAME_WIDTH + 2), Tone.TEXT)]
+    room = width - NAME_WIDTH - 3
     for number, line in enumerate(wrapped(check.state, room)):
         yield [*(blank if number else head), (f" {line}", Tone.TEXT)]
     for line in wrapped(f"→ {check.remedy}", room) if check.remedy else ():
         yield [*blank, (f" {line}", Tone.WARN)]
 
 
-def _total(severities: list[Severity]) -> Row:
-    red, yellow = severities.count(Severity.ALARM), severities.count(Severity.WARNING)
-    if red:
-        return [
-            (f"■ {red} to mend before the hand may be coupled", Tone.FAULT),
-            (_cautions(yellow), Tone.WARN),
-        ]
-    if yellow:
-        return [("✓ may be flown", Tone.OK), (_cautions(yellow), Tone.WARN)]
-    return [("✓ all is well", Tone.OK)]
-
-
-def _cautions(number: int) -> str:
-    return f"   ▲ {number} to know of" if number else ""
+def _total(found: list[Check]) -> Row:
+    red, yellow = counted(found)
+    row: Row = [(verdict(red, yellow), Tone.FAULT if red else Tone.OK)]
+    return [*row, (f"   {cautions(yellow)}", Tone.WARN)] if yellow else row
 
 
 def _buttons(frame: Frame) -> Iterator[Row]:

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
+from functools import lru_cache
 
 import numpy as np
 
-from groundstation.tui.canvas import Canvas
+from groundstation.tui.canvas import Canvas, Floats
 from groundstation.tui.frame import Frame
 from groundstation.tui.rows import Row, quantity, spread
 from groundstation.tui.tape import heading_tape
@@ -63,9 +64,8 @@ def draw_horizon(canvas: Canvas, roll: float, pitch: float) -> None:
         c, s = math.cos(roll), math.sin(roll)
         # On the picture the horizon turns against the vehicle: right is (c, −s), up (−s, −c).
         down = math.degrees(math.remainder(pitch, math.tau)) * _DOTS_A_DEGREE
-        columns, rows = np.meshgrid(np.arange(canvas.width), np.arange(canvas.height))
-        below = (columns - x) * s + (rows - y) * c - down
-        earth = (below > 1.0) & ((columns + 2 * rows) % 4 == 0)
+        columns, rows = _hatching(canvas.width, canvas.height)
+        earth = (columns - x) * s + (rows - y) * c > down + 1.0
         canvas.plot(columns[earth], rows[earth], Tone.EARTH)
         reach = canvas.width + canvas.height
         _strokes(canvas, [(x + s * down, y + c * down)], (c, -s), reach, Tone.STRONG)
@@ -77,6 +77,14 @@ def draw_horizon(canvas: Canvas, roll: float, pitch: float) -> None:
         near, far = x + side * _GAP, x + side * (_GAP + _WINGS)
         canvas.line([far, near, near], [y, y, y + 3], Tone.VEHICLE)
     canvas.plot([x, x, x - 1, x + 1], [y, y + 1, y, y], Tone.VEHICLE)
+
+
+@lru_cache(maxsize=4)
+def _hatching(width: int, height: int) -> tuple[Floats, Floats]:
+    """Return the dots of a picture that is earth all over, from left and top."""
+    columns, rows = np.meshgrid(np.arange(width, dtype=float), np.arange(height, dtype=float))
+    hatched = (columns + 2.0 * rows) % 4.0 == 0.0
+    return columns[hatched], rows[hatched]
 
 
 def _strokes(

@@ -120,7 +120,7 @@ def _score(frame: Frame, width: int) -> list[Row]:
         return []
     rows = [_row("score", (f"{score.points:.0f}", Tone.STRONG), (" of 100 points so far", Tone.MUTED))]
     for part in score.parts:
-        head: Row = [(f"   {part.name:<{_LABEL - 2}}", Tone.MUTED)]
+        head: Row = [(f"   {part.name:<{_LABEL - 1}}", Tone.MUTED)]
         if part.name in _AT_THE_END and math.isnan(part.value):
             rows.append([*head, (_AT_THE_END[part.name], Tone.FAINT)])
             continue

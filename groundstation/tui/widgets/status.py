@@ -104,6 +104,8 @@ def _device(frame: Frame) -> Row:
     device = frame.snapshot.device
     if device is None:
         return []
+    if frame.seeking:
+        return [("no device yet", Tone.WARN), ("  ", Tone.TEXT)]
     old = frame.age(device) > REPORT_STALE_S
     tone = Tone.STALE if old else Tone.TEXT if device.present else Tone.FAULT
     return [(words(device.name)[:24], tone), ("  ", Tone.TEXT)]

@@ -8,6 +8,7 @@ follow it back: there it stays where it is, and only its turning, a rate in both
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 from textual import events
 
@@ -24,6 +25,8 @@ _GAP = 4
 _FELT = 0.005
 _APART = 0.08
 _KNOB = 3
+# Shares are told apart in so many steps, finer than the dots of any pad: what moves by less is not drawn anew.
+_FINE = 128
 _CAPTIONS = ("up · turn", "forward · side")
 
 
@@ -43,6 +46,8 @@ class Stick(Instrument):
         self._held: int | None = None
         self._empty: Canvas | None = None
         self._empty_of: tuple[int, int, int | None] = (0, 0, None)
+        self._drawn: list[Row] = []
+        self._drawn_of: tuple[object, ...] = ()
 
     def data_age(self, frame: Frame) -> float:
         """Age of the handle's record."""
@@ -50,22 +55,26 @@ class Stick(Instrument):
 
     def draw(self, frame: Frame, width: int, height: int) -> list[Row]:
         """Draw both pads and, under them, what they do."""
-        canvas = self._pads(width, height).copy()
-        handle = shares(frame)
-        force = _force_shares(frame)
-        wanted = frame.stick or CENTRED
-        for index, (pad, axes) in enumerate(
-            zip(pads(width, height), ((YAW, UP), (LEFT, FORWARD)), strict=True)
-        ):
-            across, upward = axes
-            pull = (-force[LEFT], force[FORWARD]) if index else (0.0, force[UP])
-            at = (-handle[across], handle[upward])
-            asked = (-wanted[across], wanted[upward])
-            if frame.stick is not None and math.dist(asked, at) > _APART:
-                pad.ring(canvas, asked)
-            pad.arrow(canvas, at, pull)
-            pad.knob(canvas, at)
-        return canvas.to_rows()
+        empty = self._pads(width, height)
+        handle, force, wanted = (
+            _steps(shares(frame)),
+            _steps(_force_shares(frame)),
+            _steps(frame.stick or CENTRED),
+        )
+        state = (empty, handle, force, wanted, frame.stick is None)
+        if state != self._drawn_of:
+            canvas = empty.copy()
+            for index, pad in enumerate(pads(width, height)):
+                across, upward = (LEFT, FORWARD) if index else (YAW, UP)
+                pull = (-force[LEFT], force[FORWARD]) if index else (0.0, force[UP])
+                at = (-handle[across], handle[upward])
+                asked = (-wanted[across], wanted[upward])
+                if frame.stick is not None and math.dist(asked, at) > _APART:
+                    pad.ring(canvas, asked)
+                pad.arrow(canvas, at, pull)
+                pad.knob(canvas, at)
+            self._drawn, self._drawn_of = canvas.to_rows(), state
+        return self._drawn
 
     def _pads(self, width: int, height: int) -> Canvas:
         """Return the pads without a handle; drawn once, and again for another size or a hand that takes hold."""
@@ -223,6 +232,10 @@ def shares(frame: Frame) -> Share4:
         return CENTRED
     forward, left, up = (_share(value, frame.workspace) for value in handle.position)
     return forward, left, up, _share(handle.yaw, frame.run.settings.mapping.yaw_range)
+
+
+def _steps(values: Sequence[float]) -> tuple[float, ...]:
+    return tuple(round(_FINE * value) / _FINE for value in values)
 
 
 def _share(value: float, full: float) -> float:

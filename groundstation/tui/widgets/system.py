@@ -128,6 +128,8 @@ def _device(frame: Frame) -> list[Row]:
     device = frame.snapshot.device
     if device is None:
         return [_row("device", ("no report yet", Tone.MUTED))]
+    if frame.seeking:
+        return [_row("device", ("not found yet", Tone.WARN))]
     state = "ready" if device.present and device.homed else "not homed" if device.present else "gone"
     limits = f"  {quantity(1000 * device.workspace, 'mm', 0)}, {quantity(device.force_limit, 'N', 1)}"
     return [_row("device", (f"{words(device.name)}: {state}", Tone.TEXT), (limits, Tone.MUTED))]

@@ -28,6 +28,7 @@ from groundstation.progress import options as progress
 from groundstation.replay import options as replay
 from groundstation.report import options as report
 from groundstation.review import options as review
+from groundstation.shown import shown
 from groundstation.terminal import has_screen
 from groundstation.training import options as missions
 
@@ -140,7 +141,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
         # What is still to be written is written here, where somebody can say that there is no room for it.
         sys.stdout.flush()
     except InputError as error:
-        print(f"{PROGRAM}: {error}", file=sys.stderr)
+        print(shown(f"{PROGRAM}: {error}"), file=sys.stderr)
         code = EXIT_BAD_INPUT
     except KeyboardInterrupt:
         code = 130

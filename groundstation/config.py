@@ -13,7 +13,7 @@ import msgspec
 from msgspec import Meta, Struct
 
 from groundstation.errors import InputError
-from sim.scenario import error_sentence, not_finite
+from sim.scenario import error_sentence, unusable
 
 Gain = Annotated[float, Meta(gt=0, le=1_000)]
 Limit = Annotated[float, Meta(gt=0, le=1_000)]
@@ -317,10 +317,10 @@ def load_settings(path: Path | None) -> Settings:
         raise ConfigError(f"{file}: cannot be read ({error.strerror}); check the path.") from error
     except UnicodeDecodeError as error:
         raise ConfigError(f"{file}: is not UTF-8 text; settings are TOML files.") from error
-    except (tomllib.TOMLDecodeError, RecursionError) as error:
+    except (ValueError, RecursionError) as error:
         raise ConfigError(f"{file}: is not valid TOML: {error}.") from error
-    if where := not_finite(tables):
-        raise ConfigError(f"{file}: {where}: is not a finite number; give a plain number.")
+    if why := unusable(tables):
+        raise ConfigError(f"{file}: {why}.")
     try:
         return msgspec.convert(tables, Settings, strict=True)
     except msgspec.ValidationError as error:

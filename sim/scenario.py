@@ -7,7 +7,9 @@ says so. `groundstation.training.mission` reads the same tables strictly, with t
 from __future__ import annotations
 
 import math
+import re
 import tomllib
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -215,6 +217,8 @@ class Scenario(Struct, frozen=True):
 
 
 # Where no mission says otherwise: an empty world, and a vehicle that knows where it is as well as most do.
+_BEYOND = 1 << 63
+_CONTROL = re.compile(r"[\x00-\x08\x0b-\x1f\x7f-\x9f]")
 STAND_ALONE = Scenario(estimate=EstimateChoice("gps"))
 
 
@@ -230,24 +234,50 @@ def read_toml(path: Path) -> dict[str, object]:
         raise ScenarioError(f"{path}: cannot be read ({error.strerror}); check the path.") from error
     except UnicodeDecodeError as error:
         raise ScenarioError(f"{path}: is not UTF-8 text; missions are TOML files.") from error
-    except (tomllib.TOMLDecodeError, RecursionError) as error:
+    except (ValueError, RecursionError) as error:
+        # Not only what tomllib calls invalid: a number of thousands of digits is a ValueError.
         raise ScenarioError(f"{path}: is not valid TOML: {error}.") from error
-    where = not_finite(tables)
-    if where:
-        raise ScenarioError(f"{path}: {where}: is not a finite number; give a plain number.")
+    if why := unusable(tables):
+        raise ScenarioError(f"{path}: {why}.")
     return tables
 
 
+def unusable(tables: dict[str, object]) -> str:
+    """Return what keeps nested tables from being used at all, in words, or ""."""
+    try:
+        if where := not_finite(tables):
+            return f"{where}: is not a finite number; give a plain number"
+        if where := not_printable(tables):
+            return f"{where}: has a control character, which a terminal would obey; take it out"
+    except RecursionError:
+        return "its tables are nested too deep"
+    return ""
+
+
+def not_printable(value: object, key: str = "") -> str | None:
+    """Return the dotted key of the first text in nested tables with a character that moves a cursor, or None.
+
+    Lines and tabs are text.
+    """
+    if isinstance(value, str):
+        return key if _CONTROL.search(value) else None
+    return next((found for name, item in _within(value, key) if (found := not_printable(item, name))), None)
+
+
 def not_finite(value: object, key: str = "") -> str | None:
-    """Return the dotted key of the first NaN or infinity in nested tables, or None."""
+    """Return the dotted key of the first NaN, infinity or integer beyond 64 bits in nested tables, or None."""
     if isinstance(value, float):
         return None if math.isfinite(value) else key
-    pairs: list[tuple[str, object]] = []
+    if isinstance(value, int):
+        return None if abs(value) < _BEYOND else key
+    return next((found for name, item in _within(value, key) if (found := not_finite(item, name))), None)
+
+
+def _within(value: object, key: str) -> Iterator[tuple[str, object]]:
     if isinstance(value, dict):
-        pairs = [(f"{key}.{name}" if key else str(name), item) for name, item in value.items()]
+        yield from ((f"{key}.{name}" if key else str(name), item) for name, item in value.items())
     elif isinstance(value, list):
-        pairs = [(f"{key}[{index}]", item) for index, item in enumerate(value)]
-    return next((found for name, item in pairs if (found := not_finite(item, name))), None)
+        yield from ((f"{key}[{index}]", item) for index, item in enumerate(value))
 
 
 def load_scenario(path: Path) -> Scenario:

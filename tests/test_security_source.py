@@ -10,7 +10,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from groundstation.cli import main
+from groundstation.config import load_settings
+from groundstation.errors import InputError
 from groundstation.fly import log_stem
+from groundstation.shown import shown
 from groundstation.training.mission import MissionError, load_mission
 
 ROOT = Path(__file__).parents[1]
@@ -93,3 +97,43 @@ def test_a_recording_stays_in_its_folder_whatever_the_mission_is_called(tmp_path
     stem = log_stem(folder, NOW, name)
     assert stem.parent == folder.resolve()
     assert Path(f"{stem}.rrd").resolve().parent == folder.resolve()
+
+
+def written(folder, text):
+    path = folder / "given.toml"
+    path.write_text(text)
+    return path
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["level = " + "9" * 5000, "level = 0x" + "f" * 6000, "x = " + "[" * 50_000, "a." * 20_000 + "b = 1",
+     "x = 1" + "0" * 400],
+    ids=["digits", "hex", "nested", "dotted", "long"],
+)  # fmt: skip
+@pytest.mark.parametrize("load", [load_mission, load_settings])
+def test_a_file_made_to_break_its_reader_is_refused_in_a_sentence(tmp_path, text, load):
+    with pytest.raises(InputError, match=r"given\.toml: "):
+        load(written(tmp_path, f"{text}\n"))
+
+
+@pytest.mark.parametrize("evil", ["\\u001b[2J", "\\u0007", "\\u009b2J"])
+def test_a_mission_that_would_command_a_terminal_is_refused(tmp_path, evil):
+    with pytest.raises(MissionError, match="title: has a control character"):
+        load_mission(written(tmp_path, MISSION.format(name="m").replace('"x"', f'"x{evil}"')))
+
+
+def test_an_error_shows_what_was_given_and_commands_no_terminal(tmp_path, capsys):
+    path = written(tmp_path, '"\\u001b[2Jx" = 1\n')
+    with pytest.raises(SystemExit) as end:
+        main(["missions", "show", str(path)])
+    assert end.value.code == 2
+    told = capsys.readouterr().err
+    assert "?[2Jx" in told
+    assert "\x1b" not in told
+
+
+@given(st.text())
+def test_what_is_shown_is_text_of_the_same_length(text):
+    assert len(shown(text)) == len(text)
+    assert shown(text).translate({10: " ", 9: " "}).isprintable()

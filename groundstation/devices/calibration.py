@@ -64,7 +64,7 @@ def load_calibration(path: Path) -> Calibration | None:
         return None
     except OSError as error:
         raise InputError(f"{path}: cannot be read ({error.strerror}); check its permissions.") from error
-    except (UnicodeDecodeError, tomllib.TOMLDecodeError, msgspec.ValidationError) as error:
+    except (ValueError, RecursionError) as error:
         raise InputError(f"{path}: {error}; run `groundstation devices calibrate` again.") from error
 
 

@@ -14,6 +14,7 @@ from groundstation.progress.words import counted
 from groundstation.review.flight import Flight
 from groundstation.review.listing import list_flights
 from groundstation.review.outcome import attempts_of
+from groundstation.shown import shown
 from groundstation.status_line import StatusLine
 from groundstation.training.measurer import Measurer
 from groundstation.training.measures import Track
@@ -49,7 +50,7 @@ def import_flights(store: Store, files: Sequence[Path], folder: Path) -> int:
         f"{counted(added, 'flight')} added, {known} known already, from {counted(len(paths), 'recording')}."
     )
     for words in broken:
-        print(f"groundstation: {words}", file=sys.stderr)
+        print(shown(f"groundstation: {words}"), file=sys.stderr)
     return EXIT_UNREADABLE if broken else 0
 
 

@@ -19,8 +19,10 @@ from groundstation.recording.lanes import Lane
 from groundstation.recording.schema import Quantity
 from groundstation.review.earlier import settings_from
 from groundstation.review.rrd import read_chunks
+from groundstation.shown import shown
 from groundstation.training.measures import Measures
 from groundstation.training.mission import Mission
+from sim.scenario import not_printable
 
 Numbers = npt.NDArray[np.float64]
 
@@ -151,9 +153,12 @@ class Flight:
         """The mission flown, or None.
 
         Raises:
-            InputError: The recording is of something else than a flight.
+            InputError: The recording is of something else than a flight, or its mission is none.
         """
-        return msgspec.json.decode(self._facts()["mission_json"], type=Mission | None)
+        tables = msgspec.json.decode(self._facts()["mission_json"])
+        if where := not_printable(tables):
+            raise InputError(f"{self.path}: its mission's {where} has a control character; it is not used.")
+        return msgspec.convert(tables, Mission | None)
 
     @property
     def par(self) -> Measures | None:
@@ -199,7 +204,7 @@ def properties_of(chunks: list[Chunk]) -> dict[str, Any]:
         for name in rows.schema.names:
             cell = rows.column(name)[-1].as_py()
             if isinstance(cell, list) and cell:
-                found[name] = cell[0]
+                found[name] = shown(cell[0]) if isinstance(cell[0], str) else cell[0]
     return found
 
 

@@ -9,6 +9,7 @@ from pathlib import Path
 
 from groundstation.review.listing import Entry, list_flights
 from groundstation.review.results import Result, results_of
+from groundstation.shown import shown
 from groundstation.status_line import StatusLine
 
 _HEADS = ("", "started", "length", "size", "mission", "pilot", "vehicle", "score", "result", "file")
@@ -55,7 +56,7 @@ def _row(number: int, entry: Entry, result: Result) -> Sequence[str]:
         "sim" if result.simulated else "REAL",
         "–" if result.score is None else f"{result.score:.0f}",
         words if len(words) <= _LONGEST else f"{words[: _LONGEST - 1]}…",
-        entry.path.name,
+        shown(entry.path.name),
     )
 
 

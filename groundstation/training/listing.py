@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TextIO
 
 from groundstation.errors import InputError
+from groundstation.shown import shown
 from groundstation.training.checking import faults, misplaced
 from groundstation.training.curriculum import Lesson, lessons
 from groundstation.training.mission import Mission, MissionError, load_mission
@@ -45,7 +46,7 @@ def check(asked: argparse.Namespace) -> int:
         try:
             found[path] = load_mission(path)
         except MissionError as error:
-            print(f"groundstation: {error}", file=sys.stderr)
+            print(shown(f"groundstation: {error}"), file=sys.stderr)
     # A mission may need one that comes with the program, or one that is checked with it.
     known = {mission.name: mission for mission in (*(each.mission for each in lessons()), *found.values())}
     codes = [0 if found.keys() >= set(asked.files) else 2]

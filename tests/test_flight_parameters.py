@@ -44,8 +44,8 @@ def test_failsafes_are_read_by_themselves_and_a_dangerous_one_keeps_the_hand_off
         say(CommandKind.TAKEOFF)
         program.until(lambda view: view.vehicle.position[2] > 1.5, 20, "in the air")
         say(CommandKind.ENGAGE)
-        view = answered(CommandKind.ENGAGE, ok=False)
-        assert any(b"Engage refused: COM_OBL_RC_ACT = 6" in each.text for each in view.events)
+        why = b"Engage refused: COM_OBL_RC_ACT = 6"
+        program.until(lambda view: any(why in each.text for each in view.events), 10, "refused for that")
         assert view.pilot.phase == Phase.DISENGAGED
     finally:
         program.close()

@@ -14,9 +14,9 @@ from bench import gauges, reconnect, soak
 
 pytestmark = [pytest.mark.flight, pytest.mark.timeout(600)]
 
-# Five minutes are still a beginning, MB: pages are looked at for the first time, pools and tracks fill. What is said on
-# the bus for the first time, such as the points that a landing cost, opens a connection of two or three descriptors:
-# ten were seen in the first five minutes, and none in the half hour after.
+# Five minutes are still a beginning, MB: pages are looked at for the first time, pools and tracks fill. What is said
+# on the bus for the first time, such as the points that a landing cost, opens a connection of two or three
+# descriptors: ten were seen in the first five minutes, and none in the half hour after.
 STARTING_MB, STARTING_DESCRIPTORS = 10.0, 12
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import struct
 from collections.abc import Iterator
 
 import pytest
@@ -141,15 +142,29 @@ def test_a_parameter_leaves_only_while_it_is_being_set(station: Station) -> None
         return station.passes(m.MAVLink_param_set_message(VEHICLE, 1, name, value, kind))
 
     assert not setting(b"COM_OF_LOSS_T", 60.0)
-    station.gate.allow_parameter("COM_OF_LOSS_T")
-    assert setting(b"COM_OF_LOSS_T", 1.0)
+    station.gate.allow_parameter("COM_OF_LOSS_T", 0.3)
+    assert setting(b"COM_OF_LOSS_T", 0.3)
+    assert not setting(b"COM_OF_LOSS_T", 60.0)
     assert not setting(b"COM_OF_LOSS_T", NAN)
     assert not setting(b"COM_OBL_RC_ACT", 6.0)
     station.clock.now += 6.0
-    assert not setting(b"COM_OF_LOSS_T", 1.0)
-    station.gate.allow_parameter("COM_DISARM_PRFLT")
-    # −1 as an integer's bits is no number as a float.
-    assert setting(b"COM_DISARM_PRFLT", NAN, m.MAV_PARAM_TYPE_INT32)
+    assert not setting(b"COM_OF_LOSS_T", 0.3)
+
+
+def test_an_integer_leaves_in_either_of_its_encodings_and_no_other_value_does(station: Station) -> None:
+    def setting(bits: bytes) -> bool:
+        (value,) = struct.unpack("<f", bits)
+        kind = m.MAV_PARAM_TYPE_INT32
+        return station.passes(m.MAVLink_param_set_message(VEHICLE, 1, b"COM_OBL_RC_ACT", value, kind))
+
+    station.gate.allow_parameter("COM_OBL_RC_ACT", 6.0)
+    assert setting(struct.pack("<i", 6))
+    assert setting(struct.pack("<f", 6.0))
+    assert not setting(struct.pack("<i", 7))
+    assert not setting(struct.pack("<f", 0.0))
+    # Its bits as a float are a NaN of all ones.
+    station.gate.allow_parameter("COM_OBL_RC_ACT", -1.0)
+    assert setting(struct.pack("<i", -1))
 
 
 @pytest.mark.parametrize(

@@ -7,8 +7,9 @@ MAVLink's common.xml (https://mavlink.io/en/messages/common.html); payloads are 
 from __future__ import annotations
 
 import struct
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from math import isfinite, isnan
+from types import MappingProxyType
 from typing import NamedTuple
 
 HEARTBEAT, PING, PARAM_REQUEST_READ, PARAM_REQUEST_LIST, PARAM_SET = 0, 4, 20, 21, 23
@@ -43,13 +44,13 @@ class Addressee(NamedTuple):
         system: Its system id; 0 while no vehicle is known.
         modes: Custom modes, main and sub, that it may be asked for.
         killing: The operator has confirmed a kill a moment ago.
-        parameters: Names of those that are being set.
+        parameters: Those that are being set, and to what.
     """
 
     system: int = 0
     modes: frozenset[tuple[float, float]] = frozenset()
     killing: bool = False
-    parameters: frozenset[str] = frozenset()
+    parameters: Mapping[str, float] = MappingProxyType({})
 
 
 Params = tuple[float, float, float, float, float, float, float]
@@ -97,16 +98,23 @@ def _addressed(system: object, addressee: Addressee) -> str:
 
 
 def _parameter(payload: bytes, addressee: Addressee) -> str:
-    value, system, _, name, kind = _unpacked(_SET, payload)
+    _, system, _, name, kind = _unpacked(_SET, payload)
     assert isinstance(name, bytes)
-    assert isinstance(value, float)
     words = name.rstrip(b"\0").decode("ascii", errors="replace")
     if words not in addressee.parameters:
         return f"{words} is not being set"
-    # An integer travels in a float's 32 bits, and may well look like no number.
-    if kind == _REAL32 and not isfinite(value):
-        return f"{words} would be set to no number"
+    if not _carries(payload[:4].ljust(4, b"\0"), addressee.parameters[words], whole=kind != _REAL32):
+        return f"{words} would be set to something else than was asked for"
     return _addressed(system, addressee)
+
+
+def _carries(field: bytes, value: float, *, whole: bool) -> bool:
+    """Say whether PARAM_SET's value is this: as a number or, with PX4, as an integer's bits.
+
+    The two ways: https://mavlink.io/en/services/parameter.html#parameter-encoding.
+    """
+    as_number = isfinite(value) and field == struct.pack("<f", value)
+    return as_number or (whole and value == int(value) and field == struct.pack("<i", int(value)))
 
 
 def _command(payload: bytes, addressee: Addressee) -> str:

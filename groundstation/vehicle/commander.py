@@ -120,7 +120,7 @@ class Commander:
             else:
                 answered(result, None)
 
-        self._gate.allow_parameter(_TAKEOFF_ALTITUDE)
+        self._gate.allow_parameter(_TAKEOFF_ALTITUDE, self._takeoff_altitude)
         self._action.set_takeoff_altitude_async(self._takeoff_altitude, altitude_set)
 
     def _on_started(self, result: OffboardResult, _: object) -> None:

@@ -51,7 +51,7 @@ class Gate:
         self._system = 0
         self._modes: frozenset[tuple[float, float]] = frozenset()
         self._kill_until = -math.inf
-        self._parameters: dict[str, float] = {}
+        self._parameters: dict[str, tuple[float, float]] = {}
         self.sent = 0
         self.dropped = 0
 
@@ -63,10 +63,10 @@ class Gate:
         """Let a kill pass for a moment: the operator has confirmed it."""
         self._kill_until = self._clock() + KILL_S
 
-    def allow_parameter(self, name: str) -> None:
-        """Let a parameter be set for a moment."""
+    def allow_parameter(self, name: str, value: float) -> None:
+        """Let a parameter be set to a value for a moment."""
         # A new dictionary: another thread may be reading the old one.
-        self._parameters = self._parameters | {name: self._clock() + PARAMETER_S}
+        self._parameters = self._parameters | {name: (value, self._clock() + PARAMETER_S)}
 
     def authorise(self, velocity: Vector4, made_t: float) -> bool:
         """Let frames pass that carry this velocity (FLU, m/s and rad/s), while it is young.
@@ -96,7 +96,7 @@ class Gate:
 
     def _is_allowed(self, number: int, frame: bytes) -> bool:
         now = self._clock()
-        parameters = frozenset(name for name, until in self._parameters.items() if now <= until)
+        parameters = {name: value for name, (value, until) in self._parameters.items() if now <= until}
         addressee = Addressee(self._system, self._modes, now <= self._kill_until, parameters)
         payload = payload_of(frame)
         why = refusal(number, payload, addressee)

@@ -188,7 +188,7 @@ class Writer:
 
     def _write(self, name: str, value: float) -> None:
         def write() -> float:
-            self._gate.allow_parameter(name)
+            self._gate.allow_parameter(name, value)
             self._param.set_param_float(name, value)
             return value
 

@@ -139,7 +139,7 @@ class Parameters:
 
     def _set(self, number: int, name: str, amount: float, *, whole: bool) -> None:
         kind = CommandKind.SET_PARAMETER
-        self._gate.allow_parameter(name)
+        self._gate.allow_parameter(name, amount)
         try:
             if whole:
                 self._param.set_param_int(name, int(amount))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import queue
+import re
 import subprocess
 import sys
 import threading
@@ -20,6 +21,7 @@ from groundstation.tui.choices import CHOICES
 from groundstation.tui.hand import Hand
 from groundstation.tui.plain import PlainFlight
 from groundstation.tui.plain_words import HELP
+from groundstation.tui.ways import KEYS, WORDS, Ways
 
 GROUND, ARMED, AIR, ENGAGED = 0.3, 0.8, 4.0, 17.0
 
@@ -250,3 +252,23 @@ def test_a_whole_flight_in_words_without_a_terminal(tmp_path):
         flight.process.stdin.close()
         flight.process.stdout.close()
     assert list(tmp_path.glob("*.rrd"))
+
+
+def test_hints_ask_for_words_that_are_known_here_and_for_keys_that_are_known_on_the_screen():
+    known = [*ACTS, *CHOICES]
+    for name in set(Ways._fields) - {"centre", "pushed"}:
+        assert getattr(KEYS, name).removeprefix("Shift+") in {each.key for each in known if each.name == name}
+        typed = getattr(WORDS, name).strip("'")
+        assert typed in {
+            word for each in known if each.name == name for word in (each.name, each.label.lower())
+        }
+    words = Words(ENGAGED)
+    words.hear("stick 40 0 0 0", WORDS.centre.strip("'"))
+    assert words.hand.share == (0.0, 0.0, 0.0, 0.0)
+
+
+@pytest.mark.parametrize("seconds", [GROUND, ARMED, AIR, ENGAGED])
+def test_no_hint_asks_for_a_key(seconds):
+    asked = " ".join(Words(seconds).said)
+    assert re.search(r"'(arm|take off|engage|release)' (arms|takes off|engages|releases)", asked)
+    assert not re.search(r"Shift\+|\b[a-z] (takes|engages|releases|lands|holds|clutches)", asked)

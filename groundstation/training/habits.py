@@ -116,7 +116,7 @@ OSCILLATING = Habit("oscillating", "You and the drone swing after one another: l
 RUSHING = Habit("rushing", "Too fast this near: ease off until you have time to stop.")
 FIGHTING = Habit("fighting", "You push against the force and nothing moves: ease off, go round.")
 LEASH = Habit("leash", "The drone does not keep up: ease off until the leash is short.")
-EDGE = Habit("edge", "End of the handle's travel: c, bring it back, c again, reach on.")
+EDGE = Habit("edge", "End of the handle's travel: clutch, bring it back, clutch again, reach on.")
 RAMMING = Habit("ramming", "Full stick with little room: half of it leaves time to stop.", basic=True)
 ALTITUDE = Habit("altitude", "You are over or under it: the altitude is what is left to do.", basic=True)
 TURNING = Habit("turning", "No need to turn: it flies sideways and back as well, push there.", basic=True)

@@ -10,6 +10,7 @@ from groundstation.training.director import Goal
 from groundstation.training.guide import Guide, Way, way_to
 from groundstation.tui.frame import Frame
 from groundstation.tui.rows import quantity
+from groundstation.tui.ways import begun
 
 # Nearer to the nose than this the goal is ahead, nearer to the tail behind, rad.
 _AHEAD, _BEHIND = math.radians(15.0), math.radians(165.0)
@@ -54,18 +55,18 @@ def steering(frame: Frame, guide: Guide, way: Way) -> str:
     goal = guide.goal
     assert goal is not None
     if guide.landing and math.hypot(way.ahead, way.left) <= goal.radius:
-        return f"Over the pad: {_key(frame, 's', 'lower the handle')} brings it down, l lands."
+        lower = "s" if _pushed(frame) else "lower the handle"
+        return f"Over the pad: {lower} brings it down, {frame.ways.land} lands."
     if guide.hold_s and not guide.landing and _arriving(frame, goal):
-        return f"Now let go: {_key(frame, 'space stops it', 'at the centre it stops')}, then stay {guide.hold_s:g} s."
+        stops = f"{frame.ways.centre} stops it" if frame.stick is not None else "at the centre it stops"
+        return f"Now let go: {stops}, then stay {guide.hold_s:g} s."
     if way.distance > goal.radius or guide.landing:
         # What comes later stands last: where there is little room it is cut.
         then = f" Then stay {guide.hold_s:g} s." if guide.hold_s else ""
         return f"{whereabouts(guide, way)}. {_push(frame, guide, way)}{then}"
     if way.turn:
-        side, key = ("left", "a") if way.turn > 0.0 else ("right", "d")
-        return (
-            f"There. Turn {abs(math.degrees(way.turn)):.0f}° {side}{f' with {key}' if frame.stick else ''}."
-        )
+        side, key = ("left", " with a") if way.turn > 0.0 else ("right", " with d")
+        return f"There. Turn {abs(math.degrees(way.turn)):.0f}° {side}{key if _pushed(frame) else ''}."
     return f"Stay: {guide.held_s:.1f} of {guide.hold_s:g} s. {_stand(frame)}"
 
 
@@ -95,19 +96,20 @@ def _push(frame: Frame, guide: Guide, way: Way) -> str:
         along = body_from_world(along, -frame.snapshot.vehicle.position[3])
     least = _WORTH * math.hypot(*along)
     words = [
-        f"{key} {word}" if frame.stick is not None else word
+        f"{key} {word}" if _pushed(frame) else word
         for part, ends in zip(along, _PUSHES, strict=True)
         if abs(part) > least
         for word, key in (ends[part < 0.0],)
     ]
-    return f"Push {', '.join(words) if frame.stick is not None else ' and '.join(words)}."
+    return f"Push {', '.join(words) if _pushed(frame) else ' and '.join(words)}."
 
 
 def _stand(frame: Frame) -> str:
     if frame.pilot is not None and frame.pilot.mapping == MappingMode.POSITION:
         return "Keep the handle still."
-    return f"{_key(frame, 'Space', 'The centre')} is standstill."
+    return f"{begun(frame.ways.centre) if frame.stick is not None else 'The centre'} is standstill."
 
 
-def _key(frame: Frame, key: str, otherwise: str) -> str:
-    return key if frame.stick is not None else otherwise
+def _pushed(frame: Frame) -> bool:
+    """Say whether the handle is pushed with keys."""
+    return frame.stick is not None and frame.ways.pushed

@@ -19,6 +19,7 @@ from groundstation.tui.alarms import Alarms
 from groundstation.tui.hand import Share4
 from groundstation.tui.notes import Note
 from groundstation.tui.track import History, Track
+from groundstation.tui.ways import KEYS, Ways
 
 # Reports come twice a second.
 REPORT_STALE_S = 2.0
@@ -70,6 +71,7 @@ class Frame:
         alarms: What is wrong, as of the frame before.
         paint_hz: Frames painted a second, as the terminal takes them.
         device_found: The haptic device has been there since the start.
+        ways: How acts are asked for.
     """
 
     snapshot: Snapshot
@@ -90,6 +92,7 @@ class Frame:
     alarms: Alarms = field(default_factory=Alarms)
     paint_hz: float = math.nan
     device_found: bool = True
+    ways: Ways = KEYS
 
     @property
     def now(self) -> float:

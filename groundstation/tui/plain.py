@@ -37,6 +37,7 @@ from groundstation.tui.plain_words import HELP, line
 from groundstation.tui.rows import clock
 from groundstation.tui.theme import MARKS
 from groundstation.tui.track import History, Track
+from groundstation.tui.ways import WORDS
 
 _TURN_S = 0.05
 _EVERY_S = 1.0
@@ -247,6 +248,7 @@ class PlainFlight:
             figures=director.figures if director is not None else None,
             guide=guide_of(director, snapshot.t) if director is not None else None,
             coaching=self._coaching,
+            ways=WORDS,
         )
 
     def _coached(self, snapshot: Snapshot) -> str:

@@ -133,7 +133,7 @@ class StickReceiver:
         self._socket: socket.socket | None = None
         self._bound: tuple[int, int] | None = None
         self.newest: StickSample | None = None
-        self.rejected = 0
+        self.rejected = self._rejected_before = 0
 
     def open(self) -> None:
         """Bind the socket; one that a program left behind when it died is replaced.
@@ -158,7 +158,7 @@ class StickReceiver:
             ) from error
         self._socket = receiver
         self.newest = None
-        self.rejected = 0
+        self.rejected = self._rejected_before = 0
 
     def receive(self) -> list[StickSample]:
         """Return the good samples that came since the last call, each newer than the one before it.
@@ -181,7 +181,7 @@ class StickReceiver:
             if sample is None or not newest_t < sample.t <= self._clock():
                 self.rejected += 1
                 continue
-            self.newest = sample
+            self.newest, self._rejected_before = sample, self.rejected
             samples.append(sample)
         return samples
 
@@ -191,11 +191,16 @@ class StickReceiver:
         Raises:
             DeviceError: None came yet, or the newest is older than 0.2 s: a stale handle is never flown.
         """
+        if self.newest is not None and now - self.newest.t <= SILENCE_S:
+            return self.newest
+        if self.rejected > self._rejected_before:
+            raise DeviceError(
+                f"{self._path}: what comes is no sample of a stick (not a number, out of range, or old); "
+                "check the program that moves the handle."
+            )
         if self.newest is None:
             raise DeviceError(f"{self._path}: no stick yet; start the program that moves the handle.")
-        if now - self.newest.t > SILENCE_S:
-            raise DeviceError(f"{self._path}: the stick is silent; check the program that moves the handle.")
-        return self.newest
+        raise DeviceError(f"{self._path}: the stick is silent; check the program that moves the handle.")
 
     def close(self) -> None:
         """Let the socket go and remove its file, if it is still ours."""

@@ -161,6 +161,22 @@ def test_silence_is_an_error_and_ends_when_the_sender_is_back(receiver, sender, 
     assert receiver.fresh(clock.now)
 
 
+def test_a_program_that_sends_what_is_no_number_is_not_called_silent(receiver, sender, clock):
+    sender.send((math.nan, 0.0, 0.0), 0.0, 0, clock.now)
+    receiver.receive()
+    with pytest.raises(DeviceError, match="not a number"):
+        receiver.fresh(clock.now)
+    sender.send((0.0, 0.0, 0.0), 0.0, 0, clock.now)
+    receiver.receive()
+    clock.now += 0.21
+    with pytest.raises(DeviceError, match="silent"):
+        receiver.fresh(clock.now)
+    sender.send((0.0, math.inf, 0.0), 0.0, 0, clock.now)
+    receiver.receive()
+    with pytest.raises(DeviceError, match="not a number"):
+        receiver.fresh(clock.now)
+
+
 def test_what_queued_up_while_nobody_read_is_not_taken_for_fresh(receiver, sender, clock):
     sender.send((0.05, 0.0, 0.0), 0.0, 0, clock.now)
     clock.now += 5.0

@@ -266,6 +266,20 @@ def test_another_vehicle_is_told_once_and_the_silence_of_ours_with_its_end():
     assert hearing.absences == 1
 
 
+def test_a_vehicle_that_signs_while_there_is_no_key_is_told_once():
+    from groundstation.config import Safety
+    from groundstation.vehicle.hearing import Hearing
+
+    signer = mavlink.MAVLink(None, srcSystem=1, srcComponent=1)
+    signer.signing.secret_key, signer.signing.sign_outgoing = KEY, True
+    signed = bytes(signer.heartbeat_encode(2, mavlink.MAV_AUTOPILOT_PX4, 0, 0, 4).pack(signer))
+    hearing = Hearing(heard(signed), Safety())
+    ((_, words),) = hearing.news(1.1)
+    assert "--signing-key" in words
+    assert not list(hearing.news(1.2))
+    assert not list(Hearing(heard(heartbeat(1, mavlink.MAV_AUTOPILOT_PX4)), Safety()).news(1.1))
+
+
 KEY = bytes(range(32))
 
 

@@ -11,6 +11,10 @@ from groundstation.messages import Severity
 from groundstation.vehicle.pump import Pump
 from groundstation.vehicle.signing import Refusals
 
+_SIGNED = (
+    "The vehicle signs its messages and may refuse what is not signed; "
+    "end here and start with --signing-key FILE, its key."
+)
 _SILENT = BY_FAULT[Fault.LINK_SILENT]
 
 
@@ -28,7 +32,7 @@ class Hearing:
     def __init__(self, pump: Pump, safety: Safety) -> None:
         self._pump, self._safety = pump, safety
         self._refusals = Refusals()
-        self._silent = False
+        self._silent = self._told_signed = False
         self._told: frozenset[int] = frozenset()
         self.absences = 0
 
@@ -47,6 +51,9 @@ class Hearing:
             self._told |= others
             for system in sorted(others):
                 yield Severity.WARNING, _another(system)
+        if self._pump.signed and not self._told_signed:
+            self._told_signed = True
+            yield Severity.WARNING, _SIGNED
         if words := self._refusals.news(now, self._pump.refused, heard=bool(self._pump.heard_t)):
             yield Severity.WARNING, words
 

@@ -16,7 +16,7 @@ from pymavlink.dialects.v20 import minimal as mavlink
 
 from groundstation.vehicle.gate import Gate, message_number, origin, split_frames
 from groundstation.vehicle.legible import legible
-from groundstation.vehicle.signing import NEVER_SIGNED, Signing, without_signature
+from groundstation.vehicle.signing import NEVER_SIGNED, Signing, is_signed, without_signature
 from groundstation.vehicle.tlog import TlogWriter
 from groundstation.vehicle.transport import Transport
 
@@ -85,6 +85,7 @@ class Pump:
         heard_t: When the last frame came of the vehicle, or before that is known of any system that has introduced
             itself by a heartbeat; 0 before.
         refused: How many frames were not heard, for their signature.
+        signed: The vehicle signs what it says, and there is no key.
         others: Systems that say they are vehicles and are not the one that is watched.
     """
 
@@ -111,6 +112,7 @@ class Pump:
         self._thread: threading.Thread | None = None
         self.heard_t = 0.0
         self.refused = 0
+        self.signed = False
         self.others: frozenset[int] = frozenset()
 
     def start(self, mavsdk: Mavsdk) -> None:
@@ -181,6 +183,7 @@ class Pump:
         if system != (self._vehicle or system):
             return
         self.heard_t = now
+        self.signed = self._signing is None and is_signed(frame)
         with self._lock:
             self._losses.count(now, system, component, sequence)
 

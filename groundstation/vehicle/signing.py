@@ -105,7 +105,7 @@ class Signing:
 
     def trusts(self, frame: bytes) -> bool:
         """Say whether a frame is to be heard: well signed and new."""
-        if frame[0] != _V2 or not frame[2] & _SIGNED or len(frame) != _HEADER + frame[1] + _CRC + _BLOCK:
+        if not is_signed(frame) or len(frame) != _HEADER + frame[1] + _CRC + _BLOCK:
             return False
         timestamp = int.from_bytes(frame[-_BLOCK + 1 : -_HASH], "little")
         stream = (frame[-_BLOCK], *origin(frame)[1:])
@@ -162,11 +162,14 @@ class Refusals:
         )
 
 
+def is_signed(frame: bytes) -> bool:
+    """Say whether a frame says that it is signed, with whatever key."""
+    return frame[0] == _V2 and bool(frame[2] & _SIGNED)
+
+
 def without_signature(frame: bytes) -> bytes:
     """Return a frame as it was before it was signed, for logs: many signatures help to guess the key."""
-    if frame[0] != _V2 or not frame[2] & _SIGNED:
-        return frame
-    return _turned(frame[:-_BLOCK])
+    return _turned(frame[:-_BLOCK]) if is_signed(frame) else frame
 
 
 def _turned(frame: bytes) -> bytes:

@@ -137,6 +137,23 @@ def test_a_certificate_tells_what_was_passed_and_that_it_is_no_licence(capsys, l
     assert "Hover: to a point" not in words
 
 
+@pytest.mark.parametrize("suffix", ["html", "md", "pdf"])
+def test_a_pilot_s_name_is_words_and_nothing_that_a_reader_runs(capsys, tmp_path, suffix):
+    name = r"<img src=x onerror=alert(1)> $\frac{1}$ | \input{/etc/passwd}"
+    with Store(store_in(tmp_path)) as store:
+        day = datetime.datetime.now().astimezone().isoformat()
+        store.add(Flown(name, "hover", "d", day, passed=False, points=12.0, duration_s=30.0))
+    file = tmp_path / f"sheet.{suffix}"
+    assert said(capsys, "certificate", name, "--logs", tmp_path, "--out", file)[0] == 0
+    content = file.read_bytes()
+    if suffix == "pdf":
+        # No formula is set, and nothing runs in a PDF's strings.
+        assert content.startswith(b"%PDF")
+    else:
+        assert b"<img" not in content
+        assert b"&lt;img src=x" in content
+
+
 def test_a_certificate_of_another_kind_or_to_nowhere_is_refused(capsys, logs):
     assert ".pdf, .html, .md" in said(capsys, "certificate", "Ann", "--logs", logs, "--out", "a.doc")[2]
     code, _, err = said(capsys, "certificate", "Ann", "--logs", logs, "--out", logs / "no" / "a.md")

@@ -114,7 +114,8 @@ def markdown(report: Report) -> str:
         parts += [f"## {table.title}", *filter(None, (table.words,))]
         parts += [_grid(table.heads, table.rows)] if table.rows else []
     parts.append(", ".join(f"{name} {value}" for name, value in report.facts))
-    return "\n\n".join(parts) + "\n"
+    # Markdown passes HTML on, and a pilot's name may be any.
+    return "\n\n".join(parts).replace("<", "&lt;") + "\n"
 
 
 def _grid(heads: Sequence[str], rows: Sequence[Sequence[str]]) -> str:

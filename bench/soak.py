@@ -110,9 +110,22 @@ class Soak:
                 yield f"{passed:6.0f} s: {self.done.total()} faults, {self.uncoupled} times not coupled again in time"
 
     def _look_round(self) -> None:
-        """Open every page and view once: what they take when they are first made is no growth."""
+        """Open every page and view and fly to the landing once: what is first made then is no growth."""
+        self._couple()
         for key in (*_KEYS, *_KEYS):
             self.program.type(key)
+            self._pass(1.0)
+        self._land()
+        self.program.type("\x1b")
+
+    def _land(self) -> None:
+        end = time.monotonic() + _COUPLE_S
+        while time.monotonic() < end and not self.dead():
+            status = self.program.console.snapshot().status
+            if status and not status.armed:
+                return
+            if status and status.mode is not FlightMode.LAND:
+                self.program.console.command(CommandKind.LAND)
             self._pass(1.0)
 
     def dead(self) -> list[str]:

@@ -124,7 +124,7 @@ class Soak:
             status = self.program.console.snapshot().status
             if status and not status.armed:
                 return
-            if status and status.mode is not FlightMode.LAND:
+            if status and status.in_air and status.mode != FlightMode.LAND:
                 self.program.console.command(CommandKind.LAND)
             self._pass(1.0)
 

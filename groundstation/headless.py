@@ -18,7 +18,7 @@ from groundstation.bus import Bus
 from groundstation.console import Console, Snapshot
 from groundstation.errors import InputError
 from groundstation.headless_hand import OperatorHand
-from groundstation.messages import CommandAnswer, CommandKind, FlightMode, Health, Phase
+from groundstation.messages import CommandAnswer, CommandKind, FlightMode, Health, Phase, VehicleStatus
 from groundstation.processes import Supervisor
 from groundstation.progress.keeper import Keeper
 from groundstation.run import Run
@@ -26,6 +26,7 @@ from groundstation.training.director import Director, Stage
 from groundstation.training.follower import MissionFollower
 from groundstation.training.mission import Mission
 from groundstation.training.summary import Narrator, summarise
+from groundstation.vehicle.profiles import LEFT_BY_LANDING
 
 TURN_S = 0.02
 _STEP_S = 20.0
@@ -164,7 +165,7 @@ class HeadlessFlight:
         if status is None:
             return False
         if self.step is Step.CONNECT:
-            return bool(status.connected) and bool(status.health & Health.ARMABLE) and view.servo is not None
+            return bool(status.connected) and _can_be_armed(status) and view.servo is not None
         if self.step is Step.ARM:
             return bool(status.armed)
         if self.step is Step.TAKEOFF:
@@ -221,9 +222,14 @@ def _missing(view: Snapshot) -> str:
         return "nothing was heard from a vehicle; check that it is on and the URL is its"
     if not view.status.connected:
         return "frames come, but no autopilot's heartbeat among them"
-    if not view.status.health & Health.ARMABLE:
+    if not _can_be_armed(view.status):
         return "the vehicle says it cannot be armed; see its messages"
     return "the servo has not started"
+
+
+def _can_be_armed(status: VehicleStatus) -> bool:
+    """Say whether it can be armed as it is, or by way of Hold."""
+    return bool(status.health & Health.ARMABLE) or status.mode in LEFT_BY_LANDING
 
 
 def fly_headless(

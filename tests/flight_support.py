@@ -16,7 +16,7 @@ from pymavlink.dialects.v20 import common as mavlink
 from bench.rig import ROOT, Hand, Program, Tap, hovers, vehicle
 from groundstation.messages import CommandKind, Health, Phase
 
-PX4_AUTO, PX4_LOITER, PX4_RETURN, PX4_OFFBOARD = 4, 3, 5, 6
+PX4_AUTO, PX4_LOITER, PX4_RETURN, PX4_LAND, PX4_OFFBOARD = 4, 3, 5, 6, 6
 OURS = {"pilot", "link", "recorder"}
 LONG = """
 schema = 1

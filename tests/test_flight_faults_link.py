@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 from flight_support import (
     PX4_AUTO,
+    PX4_LAND,
     PX4_LOITER,
     Stage,
     another_station,
@@ -26,7 +27,7 @@ from flight_support import (
 
 from bench.radio import Radio
 from bench.rig import SETPOINT_ID
-from groundstation.messages import CommandKind, Phase
+from groundstation.messages import CommandKind, FlightMode, Health, Phase
 
 pytestmark = [pytest.mark.flight, pytest.mark.timeout(180)]
 
@@ -73,6 +74,21 @@ def test_arming_that_is_denied_is_explained_within_a_second(stage):
         assert not program.console.snapshot().status.armed
     finally:
         set_parameters(stage.tap, COM_ARM_MIS_REQ=0)
+
+
+def test_a_vehicle_that_is_left_in_land_is_armed_by_way_of_hold(stage):
+    """PX4 from 1.14 on goes to Hold when it has landed, and others stay: there nothing is armed."""
+    program = stage.ready
+    program.until(lambda view: hears(view) and view.status.health, 40, "heard")
+    other = another_station()
+    land = other.command_long_encode(1, 1, 176, 0, 1 | 128, PX4_AUTO, PX4_LAND, 0, 0, 0, 0)
+    stage.tap.inject(bytes(land.pack(other)))
+    program.until(lambda view: view.status.mode == FlightMode.LAND, 5, "it is in Land")
+    program.until(lambda view: not view.status.health & Health.ARMABLE, 5, "it cannot be armed there")
+    program.console.command(CommandKind.ARM)
+    program.until(lambda view: view.status.armed, 5, "it is armed")
+    program.console.command(CommandKind.DISARM)
+    program.until(lambda view: not view.status.armed, 5, "it is disarmed")
 
 
 def test_a_mode_that_is_denied_is_explained_within_a_second_and_nothing_is_coupled(flight):

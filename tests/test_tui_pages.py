@@ -212,6 +212,10 @@ async def test_what_is_wrong_is_red_with_what_to_do(spoil, state, remedy):
         assert "■ 1 to mend" in lines(scene)
 
 
+def in_land(snapshot) -> None:
+    snapshot.status.mode, snapshot.status.health = FlightMode.LAND, 63
+
+
 @pytest.mark.parametrize(
     ("spoil", "state", "remedy"),
     [
@@ -222,6 +226,7 @@ async def test_what_is_wrong_is_red_with_what_to_do(spoil, state, remedy):
             "props off",
         ),
         (lambda s: setattr(s.status, "health", 63), "cannot be armed yet", "log (F12)"),
+        (in_land, "cannot be armed in LAND", "Hold first"),
         (lambda s: setattr(s.status, "firmware", b"1.13.3"), "PX4 1.13.3, older than 1.14", "update"),
         (lambda s: setattr(s.status, "health", 111), "local only, without GPS", "Return"),
         (lambda s: setattr(s.vehicle, "boot_t", 4.0), "4.0 s", "settle"),

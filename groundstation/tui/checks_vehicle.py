@@ -13,7 +13,7 @@ from groundstation.tui.frame import Frame
 from groundstation.tui.notes import words
 from groundstation.tui.rows import quantity, span_of_time
 from groundstation.vehicle.failsafes import verdict
-from groundstation.vehicle.profiles import outdated, profile_of
+from groundstation.vehicle.profiles import LEFT_BY_LANDING, outdated, profile_of
 
 _OK, _CAUTION, _DANGER = Severity.INFO, Severity.WARNING, Severity.ALARM
 # The vehicle's own words are given as a reason for so long, s: PX4 tells why it cannot be armed once, on asking.
@@ -88,6 +88,13 @@ def health(frame: Frame) -> Check:
     if missing:
         return Check("health", _DANGER, f"not calibrated: {', '.join(missing)}", "calibrate the vehicle")
     if Health.ARMABLE not in known and not status.armed:
+        if status.mode in LEFT_BY_LANDING:
+            return Check(
+                "health",
+                _CAUTION,
+                f"cannot be armed in {judge.mode_word(status.mode)}",
+                "arm: it goes to Hold first",
+            )
         why = _last_words(frame)
         remedy = "mend what it says" if why else "wait; on arming it tells why, see the log (F12)"
         return Check("health", _CAUTION, ": ".join(filter(None, ("cannot be armed yet", why))), remedy)

@@ -90,13 +90,27 @@ class Commander:
 
     def do(self, kind: CommandKind, number: int = 0) -> None:
         """Send a command. Number 0 is the program's own act, others are the operator's."""
+        self._acts[kind](lambda result, _: self._answer(number, kind, result))
 
-        def answered(result: ActionResult, _: object) -> None:
-            ok = result is ActionResult.SUCCESS
-            why = "" if ok else _WORDS.get(result, result.name.replace("_", " ").lower())
-            self.answers.put(Answer(number, kind, ok, why))
+    def arm_from_hold(self, number: int) -> None:
+        """Arm by way of Hold: in a mode that a landing leaves behind, a vehicle may not be armed.
 
-        self._acts[kind](answered)
+        PX4 1.14 goes to Hold by itself when it has landed, later versions may stay:
+        https://github.com/mavlink/MAVSDK/pull/3099.
+        """
+
+        def held(result: ActionResult, _: object) -> None:
+            if result is ActionResult.SUCCESS:
+                self.do(CommandKind.ARM, number)
+            else:
+                self._answer(number, CommandKind.ARM, result)
+
+        self._action.hold_async(held)
+
+    def _answer(self, number: int, kind: CommandKind, result: ActionResult) -> None:
+        ok = result is ActionResult.SUCCESS
+        why = "" if ok else _WORDS.get(result, result.name.replace("_", " ").lower())
+        self.answers.put(Answer(number, kind, ok, why))
 
     def start_offboard(self) -> None:
         """Ask for offboard. A setpoint must have been given just before."""

@@ -51,7 +51,7 @@ from groundstation.vehicle.interventions import Interventions
 from groundstation.vehicle.obstacle_view import ObstacleView
 from groundstation.vehicle.offboard import Act, OffboardStream, Seen
 from groundstation.vehicle.parameter_desk import PARAMETER_COMMANDS, ParameterDesk
-from groundstation.vehicle.profiles import profile_of
+from groundstation.vehicle.profiles import LEFT_BY_LANDING, profile_of
 from groundstation.vehicle.pump import Pump
 from groundstation.vehicle.round_trip import RoundTrip
 from groundstation.vehicle.signed_times import TimesKeeper, read_times
@@ -256,7 +256,10 @@ class Link:
         if kind in STEERING:
             self._stream.end()
             self._gate.close()
-        self._commander.do(kind, number)
+        if kind is CommandKind.ARM and self._view.mode in LEFT_BY_LANDING and not self._view.in_air:
+            self._commander.arm_from_hold(number)
+        else:
+            self._commander.do(kind, number)
 
     def _tell(self, answer: Answer, now: float) -> None:
         self._answer(answer.number, answer.kind, ok=answer.ok, text=answer.why, now=now)

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from typing import NamedTuple
 
 from groundstation.frames import Vector3
-from groundstation.messages import Autopilot
+from groundstation.messages import Autopilot, FlightMode
 from groundstation.vehicle import ardupilot, px4
 from groundstation.vehicle.failsafes import Judged, unsafe
 
@@ -59,6 +59,9 @@ PROFILES: Mapping[Autopilot, Profile] = {
 _UNKNOWN = (
     "this autopilot is neither PX4 nor ArduPilot: what it does by itself is not known, so it is not flown"
 )
+
+# Modes that a landing may leave behind and that no vehicle takes off in: it is armed by way of Hold.
+LEFT_BY_LANDING = frozenset({FlightMode.LAND, FlightMode.RETURN, FlightMode.OFFBOARD})
 
 
 def profile_of(autopilot: int) -> Profile | None:

@@ -1,7 +1,8 @@
 """A link that is connected and cut off a thousand times: what its process keeps of it.
 
 The real link process on a bus, and a real simulated vehicle; between them a TCP relay that hangs up as soon as the
-vehicle's state has come through, or a serial port that is then pulled out and plugged in again.
+vehicle's state has come through, a serial port that is then pulled out and plugged in again, or UDP, where nothing
+passes for a while.
 """
 
 from __future__ import annotations
@@ -16,9 +17,9 @@ from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager
 from pathlib import Path
 
-from bench import gauges
+from bench import gauges, rig
 from bench.radio import Radio, Relay
-from bench.rig import ROOT
+from bench.rig import ROOT, Tap
 from groundstation.bus import Bus
 from groundstation.config import Settings
 from groundstation.messages import EVENT, VEHICLE_STATE
@@ -30,6 +31,8 @@ Way = Callable[[Path], AbstractContextManager[tuple[str, Callable[[], object]]]]
 FULL, SHORT = 1000, 25
 MEMORY_BAR_MB = 1.0
 _PATIENCE_S = 30.0
+# Longer than `safety.link_warning_s`, from which the vehicle counts as silent.
+_SILENCE_S = 0.7
 # What is made once, such as buffers and caches, is made in the first cycles.
 _WARM_UP = 0.2
 
@@ -108,6 +111,21 @@ def serial(folder: Path) -> Iterator[tuple[str, Callable[[], object]]]:
         yield f"serial://{radio.name}:57600", replug
 
 
+@contextlib.contextmanager
+def udp(_folder: Path) -> Iterator[tuple[str, Callable[[], object]]]:
+    """Yield the address of a vehicle behind UDP, and what lets it be silent until that is told."""
+    with contextlib.closing(Tap()) as tap, rig.vehicle(tap.vehicle_port):
+
+        def fade() -> None:
+            tap.passes = lambda _: False
+            time.sleep(_SILENCE_S)
+            for heard in (tap.heard, tap.said):
+                heard.clear()
+            tap.passes = lambda _: True
+
+        yield f"udpout://127.0.0.1:{tap.program_port}", fade
+
+
 def cycles(way: Way, count: int) -> list[gauges.Reading]:
     """Connect and cut off so many times; return a reading of the link after each."""
     readings: list[gauges.Reading] = []
@@ -127,7 +145,7 @@ def cycles(way: Way, count: int) -> list[gauges.Reading]:
 def main(*, short: bool) -> Iterator[str]:
     """Yield the table."""
     count = SHORT if short else FULL
-    for way in (tcp, serial):
+    for way in (tcp, serial, udp):
         readings = cycles(way, count)
         grown = gauges.growth(readings[round(_WARM_UP * count) :])
         yield f"{way.__name__}: {count} times connected and cut off in {readings[-1].t - readings[0].t:.0f} s"

@@ -38,7 +38,7 @@ def test_random_faults_kill_nothing_and_let_nothing_run_away():
         assert growth.descriptors <= STARTING_DESCRIPTORS, role
 
 
-@pytest.mark.parametrize("way", [reconnect.tcp, reconnect.serial])
+@pytest.mark.parametrize("way", [reconnect.tcp, reconnect.serial, reconnect.udp])
 def test_a_link_connected_and_cut_off_again_and_again_keeps_nothing(way):
     readings = reconnect.cycles(way, 20)
     # What is read in the moment of a cut has the old socket and the new one: the middle of half of them has not.

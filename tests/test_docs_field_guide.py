@@ -32,8 +32,8 @@ COMMANDS = [
 # What PX4 has and is not judged here, with what the guide says of it.
 NOT_JUDGED = {
     "COM_DISARM_PRFLT", "COM_DL_LOSS_T", "COM_RC_LOSS_T", "COM_RC_STICK_OV", "GF_MAX_HOR_DIST", "GF_MAX_VER_DIST",
-    "MAV_0_CONFIG", "MAV_0_FORWARD", "MAV_0_MODE", "MAV_0_RATE", "MAV_PROTO_VER", "MAV_SYS_ID", "RTL_RETURN_ALT", "SER_TEL1_BAUD",
-    "SER_TEL1_PROTO",
+    "MAV_0_CONFIG", "MAV_0_FORWARD", "MAV_0_MODE", "MAV_0_RATE", "MAV_PROTO_VER", "MAV_SYS_ID", "RTL_RETURN_ALT",
+    "SER_TEL1_BAUD", "SER_TEL1_PROTO",
 }  # fmt: skip
 ADVISED = {
     "COM_OF_LOSS_T": ("0.5 to 1.0 s", (0.5, 1.0)),

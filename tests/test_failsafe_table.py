@@ -301,8 +301,8 @@ def test_a_silent_vehicle_is_told_by_a_real_link(tmp_path: Path) -> None:
     from mavsdk import Configuration, Mavsdk
 
     from groundstation.vehicle.asleep import Sleep
+    from groundstation.vehicle.conversation import Conversation
     from groundstation.vehicle.gate import Gate
-    from groundstation.vehicle.link import Link
     from groundstation.vehicle.pump import Pump
     from groundstation.vehicle.transport import Url, open_transport
 
@@ -315,18 +315,18 @@ def test_a_silent_vehicle_is_told_by_a_real_link(tmp_path: Path) -> None:
     pump = Pump(open_transport(Url("udpin", "127.0.0.1", 0)), gate, None, time.monotonic)
     mav = Mavsdk(Configuration.create_manual(255, 190, True))
     pump.start(mav)
-    link = Link(run, bus, mav, pump, gate, notes=queue.SimpleQueue(), sleep=Sleep())
+    vehicle = Conversation(run, bus, mav, pump, gate, notes=queue.SimpleQueue(), sleep=Sleep())
     try:
-        link.turn()
+        vehicle.turn()
         assert list(events.drain()) == []
         pump.heard_t = time.monotonic() - 0.6
-        link._next_status = 0.0
-        link.turn()
+        vehicle._next_status = 0.0
+        vehicle.turn()
         ((severity, words),) = [(event.severity, event.text.decode()) for event in events.drain()]
         assert severity == row.severity
         assert said(row).fullmatch(words)
     finally:
-        link.close()
+        vehicle.close()
         pump.stop()
         mav.destroy()
         bus.close()

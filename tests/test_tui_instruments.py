@@ -13,6 +13,7 @@ from textual.geometry import Region
 
 from groundstation.tui.canvas import Canvas
 from groundstation.tui.rows import width_of
+from groundstation.tui.screens.flight import FlightScreen
 from groundstation.tui.tape import heading_tape
 from groundstation.tui.theme import PALETTES, THEMES, Tone, styles_of
 from groundstation.tui.widgets.attitude import draw_horizon
@@ -99,6 +100,18 @@ async def test_a_click_on_its_name_chooses_an_instrument():
         await scene.see()
         assert "curves" in seen(scene)
         assert "map" not in seen(scene)
+
+
+async def test_a_key_that_comes_before_the_instruments_are_there_is_not_lost_and_ends_nothing():
+    """The application hears `tab` itself: on a slow machine before its screen is composed."""
+    async with cockpit() as scene:
+        early = FlightScreen(None)
+        early.action_page(1)
+        scene.app.push_screen(early)
+        await scene.pilot.pause()
+        assert early.has_class("-solo")
+        assert early.query_one("#map").has_class("-here")
+        assert not early.query_one("#curves").has_class("-here")
 
 
 async def test_acts_are_one_key_away_on_every_page():

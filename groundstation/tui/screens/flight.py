@@ -110,7 +110,6 @@ class FlightScreen(Screen[None], Composed):  # pyright: ignore[reportIncompatibl
         self._instruments: list[Instrument] = []
         self._shown: list[Instrument] = []
         self._latest: Frame | None = None
-        self._page = ""
 
     def compose(self) -> ComposeResult:
         """Lay out the instruments."""
@@ -139,8 +138,9 @@ class FlightScreen(Screen[None], Composed):  # pyright: ignore[reportIncompatibl
         yield Keys(id="keys")
 
     def on_mount(self) -> None:
-        """Remember the instruments."""
+        """Remember the instruments, and show the one that was asked for before they were there."""
         self._instruments = list(self.query(Instrument))
+        self._make_room(self._pages.page)
 
     def show(self, frame: Frame) -> None:
         """Hand a frame to the instruments that are to be seen."""
@@ -165,6 +165,11 @@ class FlightScreen(Screen[None], Composed):  # pyright: ignore[reportIncompatibl
     def show_page(self, name: str) -> None:
         """Give the body to one instrument, or to all that there is room for."""
         self._pages.page = name
+        # On a slow machine keys come before the instruments do.
+        if self._instruments:
+            self._make_room(name)
+
+    def _make_room(self, name: str) -> None:
         self.set_class(name != ALL, "-solo")
         for widget in self.query("#body *"):
             widget.remove_class("-here")

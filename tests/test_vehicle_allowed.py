@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import struct
+import time
 from collections.abc import Iterator
 
 import pytest
@@ -20,6 +21,7 @@ from groundstation.vehicle import allowed
 from groundstation.vehicle.commander import Commander
 from groundstation.vehicle.gate import KILL_S, Gate, message_number, split_frames
 from groundstation.vehicle.profiles import PROFILES
+from groundstation.vehicle.takeoff_altitude import TakeoffAltitude
 
 NAN = math.nan
 BLANK = (NAN,) * 7
@@ -39,8 +41,13 @@ class Station:
     def __init__(self, autopilot: Autopilot = Autopilot.PX4, system: int = VEHICLE) -> None:
         self.clock, self.told = Clock(), []
         self.gate = Gate(0.15, self.clock, self.told.append)
+        self.profile = PROFILES[autopilot]
         if system:
-            self.gate.address(system, PROFILES[autopilot].modes)
+            self.gate.address(system, self.profile.modes)
+
+    def altitude(self, wire: Wire) -> TakeoffAltitude | None:
+        name = self.profile.takeoff_altitude
+        return TakeoffAltitude(wire.system, self.gate, name, 2.0, time.monotonic) if name else None
 
     def passes(self, message: m.MAVLink_message) -> bool:
         return self.gate.passes(message.pack(m.MAVLink(None, srcSystem=255, srcComponent=190)))
@@ -225,7 +232,7 @@ def test_every_act_of_the_operator_leaves_a_real_mavsdk_through_the_gate(
     flown: tuple[Wire, Station],
 ) -> None:
     wire, station = flown
-    commander = Commander(wire.system, station.gate, 2.0)
+    commander = Commander(wire.system, station.gate, 2.0, station.altitude(wire))
     for kind in (
         CommandKind.ARM, CommandKind.TAKEOFF, CommandKind.HOLD, CommandKind.RETURN, CommandKind.LAND,
         CommandKind.DISARM, CommandKind.KILL,
@@ -235,6 +242,7 @@ def test_every_act_of_the_operator_leaves_a_real_mavsdk_through_the_gate(
         found: list[m.MAVLink_message] = []
 
         def acted(found: list[m.MAVLink_message] = found) -> bool:
+            commander.turn()
             found += [
                 each for each in left(wire, station) if each.get_type() in {"COMMAND_LONG", "PARAM_SET"}
             ]

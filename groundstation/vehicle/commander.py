@@ -13,9 +13,8 @@ from mavsdk.plugins.offboard import Offboard, OffboardResult, VelocityBodyYawspe
 from groundstation.frames import Vector4, frd_from_flu
 from groundstation.messages import CommandKind
 from groundstation.vehicle.gate import Gate
+from groundstation.vehicle.takeoff_altitude import TakeoffAltitude
 
-# MAVSDK sets this parameter of PX4's; another autopilot is given the altitude with the command.
-_TAKEOFF_ALTITUDE = "MIS_TAKEOFF_ALT"
 RADIANS_TO_DEGREES = 57.29577951308232
 
 # Commands that change who steers: the offboard stream makes room for them.
@@ -38,6 +37,7 @@ _WORDS = {
     ActionResult.COMMAND_DENIED_LANDED_STATE_UNKNOWN: "the vehicle does not know whether it is landed",
     ActionResult.COMMAND_DENIED_NOT_LANDED: "the vehicle is not landed",
     ActionResult.TIMEOUT: "the vehicle did not answer; check the link",
+    ActionResult.PARAMETER_ERROR: "the vehicle does not take the altitude of take-off",
     ActionResult.UNSUPPORTED: "the vehicle cannot do that",
 }
 
@@ -65,17 +65,20 @@ class Commander:
     Args:
         system: The vehicle.
         gate: Lets pass what is rarely meant only when it is.
-        takeoff_altitude: Where take-off ends, m above the ground.
+        takeoff_m: Where take-off ends, m above the ground.
+        altitude: Tells the vehicle so, where it is a parameter; None where it goes with the command.
 
     Attributes:
         answers, offboard_answers: What has been answered since they were last emptied.
     """
 
-    def __init__(self, system: System, gate: Gate, takeoff_altitude: float) -> None:
+    def __init__(
+        self, system: System, gate: Gate, takeoff_m: float, altitude: TakeoffAltitude | None
+    ) -> None:
         self._gate = gate
         self._action = Action(system)
         self._offboard = Offboard(system)
-        self._takeoff_altitude = takeoff_altitude
+        self._takeoff_m, self._altitude = takeoff_m, altitude
         self._acts: dict[CommandKind, Callable[[Callable[[ActionResult, object], None]], None]] = {
             CommandKind.ARM: self._action.arm_async,
             CommandKind.DISARM: self._action.disarm_async,
@@ -90,7 +93,14 @@ class Commander:
 
     def do(self, kind: CommandKind, number: int = 0) -> None:
         """Send a command. Number 0 is the program's own act, others are the operator's."""
+        if self._altitude and kind in STEERING:
+            self._altitude.forget()
         self._acts[kind](lambda result, _: self._answer(number, kind, result))
+
+    def turn(self) -> None:
+        """Go on with what takes more than one message; never waits."""
+        if self._altitude:
+            self._altitude.turn()
 
     def arm_from_hold(self, number: int) -> None:
         """Arm by way of Hold: in a mode that a landing leaves behind, a vehicle may not be armed.
@@ -128,14 +138,16 @@ class Commander:
         self._action.kill_async(answered)
 
     def _takeoff(self, answered: Callable[[ActionResult, object], None]) -> None:
-        def altitude_set(result: ActionResult, _: object) -> None:
+        def altitude_set(result: ActionResult, _: object = None) -> None:
             if result is ActionResult.SUCCESS:
                 self._action.takeoff_async(answered)
             else:
                 answered(result, None)
 
-        self._gate.allow_parameter(_TAKEOFF_ALTITUDE, self._takeoff_altitude)
-        self._action.set_takeoff_altitude_async(self._takeoff_altitude, altitude_set)
+        if self._altitude:
+            self._altitude.set(altitude_set)
+        else:
+            self._action.set_takeoff_altitude_async(self._takeoff_m, altitude_set)
 
     def _on_started(self, result: OffboardResult, _: object) -> None:
         ok, heard = result is OffboardResult.SUCCESS, result is not OffboardResult.TIMEOUT

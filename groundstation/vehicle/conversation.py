@@ -43,6 +43,7 @@ from groundstation.vehicle.profiles import LEFT_BY_LANDING, profile_of
 from groundstation.vehicle.pump import Pump
 from groundstation.vehicle.replies import Replies
 from groundstation.vehicle.round_trip import RoundTrip
+from groundstation.vehicle.takeoff_altitude import TakeoffAltitude
 from groundstation.vehicle.telemetry import Notes, VehicleView
 
 _TURN_S = 0.001
@@ -119,6 +120,7 @@ class Conversation:
             self._discover(now)
         else:
             self._fly(now)
+            self._commander.turn()
             self._collect_answers(now)
         if self._round_trip:
             self._round_trip.turn()
@@ -175,10 +177,14 @@ class Conversation:
 
     def _attach(self, system: System) -> None:
         mission = self._run.mission
-        altitude = mission.takeoff_altitude_m if mission else _DEFAULT_TAKEOFF_M
+        metres = mission.takeoff_altitude_m if mission else _DEFAULT_TAKEOFF_M
         profile = profile_of(system.autopilot_type())
+        parameter = profile.takeoff_altitude if profile else ""
+        altitude = (
+            TakeoffAltitude(system, self._gate, parameter, metres, time.monotonic) if parameter else None
+        )
         self._gate.address(system.get_system_id(), profile.modes if profile else frozenset())
-        self._commander = Commander(system, self._gate, altitude)
+        self._commander = Commander(system, self._gate, metres, altitude)
         self._round_trip = RoundTrip(system, time.monotonic)
         self._obstacles = ObstacleView(system, self._view.yaw, self._notes, time.monotonic)
         self._desk = ParameterDesk(self._bus, system, self._gate, profile)

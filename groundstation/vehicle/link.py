@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import atexit
+import os
 import queue
 import threading
 import time
@@ -72,11 +74,14 @@ def body(run: Run, bus: Bus, lifeline: Lifeline) -> None:
         pump.stop()
         if free:
             mav.destroy()
+            mavsdk.log_unsubscribe()
+        else:
+            # Its threads go on, and would call into an interpreter that is being taken down.
+            atexit.register(os._exit, 0)
         if tlog:
             tlog.close()
         if times:
             times.close()
-        mavsdk.log_unsubscribe()
 
 
 def _open_signing(run: Run, notes: Notes) -> tuple[Signing | None, TimesKeeper | None]:

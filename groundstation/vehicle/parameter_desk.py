@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import time
 from collections.abc import Iterator
 
 from mavsdk import System
@@ -12,9 +13,8 @@ from groundstation.clock import Every
 from groundstation.frames import Vector3
 from groundstation.messages import PARAMETER, PARAMETER_TEXT, Command, CommandKind, Parameter, Severity, fit
 from groundstation.vehicle.commander import Answer
-from groundstation.vehicle.failsafes import Judged
 from groundstation.vehicle.gate import Gate
-from groundstation.vehicle.overheard import Overheard
+from groundstation.vehicle.judged_parameters import JudgedParameters, Told
 from groundstation.vehicle.parameters import Parameters, Read, cannot_be_set
 from groundstation.vehicle.profiles import Profile, speed_limits, unsafe_for
 
@@ -36,9 +36,9 @@ class ParameterDesk:
 
     def __init__(self, bus: Bus, system: System, gate: Gate, profile: Profile | None) -> None:
         self._profile = profile
-        self._judges = {each.name: each for each in profile.judged} if profile else {}
-        self._parameters = Parameters(system, gate, tuple(self._judges.values()))
-        self._overheard = Overheard(system, bytewise=profile.bytewise) if profile else None
+        self._parameters = Parameters(system, gate)
+        wanted, bytewise = (profile.judged, profile.bytewise) if profile else ((), False)
+        self._heard = JudgedParameters(system, wanted, bytewise=bytewise, clock=time.monotonic)
         self._bus = bus
         self._publisher = bus.publisher(PARAMETER)
         self._whole: dict[str, bool] = {}
@@ -49,15 +49,17 @@ class ParameterDesk:
     @property
     def unsafe(self) -> str:
         """Why the vehicle's parameters keep the hand from being coupled, or ""."""
-        return unsafe_for(self._profile, self._parameters.judged)
+        return unsafe_for(self._profile, self._heard.values)
 
     @property
     def speed_limits(self) -> Vector3:
         """The largest speeds that the vehicle allows, m/s: around, up, down; 0 where that is not known."""
-        return speed_limits(self._profile, self._parameters.judged)
+        return speed_limits(self._profile, self._heard.values)
 
     def obey(self, command: Command, *, armed: bool) -> str:
         """Begin what is asked for; return why it is refused at once, or ""."""
+        if self._parameters.reading:
+            return "all parameters are being read; wait until they are"
         if command.kind == CommandKind.PARAMETERS:
             self._parameters.fetch_all(command.number)
             return ""
@@ -79,18 +81,17 @@ class ParameterDesk:
         """
         if boots != self._boots:
             self._boots = boots
-            self._parameters.forget()
+            self._heard.forget()
             self._judged.clear()
-        for name, value in self._overheard.take() if self._overheard else ():
-            if name in self._judges:
-                self._hear(self._judges[name], value, now)
+        for told in self._heard.turn():
+            self._hear(told, now)
         while not self._parameters.read.empty():
             read = self._parameters.read.get()
             self._whole[read.name] = read.whole
             self._send(read, now)
         if self._ask.due(now) or absences != self._absences:
             self._absences = absences
-            self._parameters.ask_again()
+            self._heard.ask_again()
         if self._again.due(now):
             # Who has come meanwhile gets to know what they are.
             for record in self._judged.values():
@@ -98,9 +99,10 @@ class ParameterDesk:
         while not self._parameters.answers.empty():
             yield self._parameters.answers.get()
 
-    def _hear(self, judged: Judged, value: float, now: float) -> None:
+    def _hear(self, told: Told, now: float) -> None:
         """Judge anew what the vehicle told, and say so where it is not what it was."""
-        before = self._parameters.hear(judged.name, value)
+        judged, value, before = told
+        self._whole[judged.name] = judged.whole
         if before == value or (before is not None and math.isnan(before) and math.isnan(value)):
             return
         self._judged[judged.name] = self._send(Read(judged.name, value, judged.whole), now)

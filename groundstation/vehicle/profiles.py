@@ -20,6 +20,7 @@ class Profile(NamedTuple):
         judged: Parameters that are read and judged.
         speeds: Names of those that bound the speed: around, up, down.
         unit: That they are in, m/s.
+        takeoff_altitude: The parameter that says where take-off ends, m; "" where that goes with the command.
         modes: Custom modes, main and sub, that it is asked for.
         bytewise: A whole number's bits travel in a parameter's float; else the float has its value.
         since: The oldest firmware, major and minor, whose parameters and modes are those that are known here.
@@ -30,6 +31,7 @@ class Profile(NamedTuple):
     judged: tuple[Judged, ...]
     speeds: tuple[str, str, str]
     unit: float
+    takeoff_altitude: str
     modes: frozenset[tuple[float, float]]
     bytewise: bool
     since: tuple[int, int]
@@ -43,13 +45,22 @@ class Profile(NamedTuple):
 
 PROFILES: Mapping[Autopilot, Profile] = {
     Autopilot.PX4: Profile(
-        "PX4", px4.JUDGED, px4.SPEEDS, 1.0, px4.MODES, bytewise=True, since=px4.SINCE, tested=True
+        "PX4",
+        px4.JUDGED,
+        px4.SPEEDS,
+        1.0,
+        px4.TAKEOFF_ALTITUDE,
+        px4.MODES,
+        bytewise=True,
+        since=px4.SINCE,
+        tested=True,
     ),
     Autopilot.ARDUPILOT: Profile(
         "ArduPilot",
         ardupilot.JUDGED,
         ardupilot.SPEEDS,
         0.01,
+        "",
         ardupilot.MODES,
         bytewise=False,
         since=ardupilot.SINCE,

@@ -21,6 +21,7 @@ _OFFBOARD, _EXCUSES = 4, 31
 # AUTO with its sub-modes LOITER and RTL, and OFFBOARD. Take-off and landing are commands of their own.
 # Before it, COM_OBL_ACT said what is done without a transmitter, which is not read here.
 SINCE = (1, 14)
+TAKEOFF_ALTITUDE = "MIS_TAKEOFF_ALT"
 MODES = frozenset({(4.0, 3.0), (4.0, 5.0), (6.0, 0.0)})
 
 

@@ -22,7 +22,7 @@ from pymavlink.dialects.v20 import common as mavlink
 
 from bench import gauges
 from bench.rig import Hand, Program, Tap, vehicle
-from groundstation.messages import CommandKind, FlightMode, Health, Phase
+from groundstation.messages import CommandKind, FlightMode, Health, Phase, Severity
 
 FULL_S, SHORT_S = 1800.0, 300.0
 GROWTH_BAR_MB, TICKS_BAR = 1.0, 0.99
@@ -32,6 +32,8 @@ _SAMPLE_S = 1.0
 _BETWEEN_S = (2.0, 6.0)
 _COUPLE_S = 45.0
 _REACH_M = 0.06
+# As many events as the screen keeps, and a few more.
+_SAID = 520
 _KEYS = (
     "\x1b[18~",
     "\x1b[19~",
@@ -110,13 +112,17 @@ class Soak:
                 yield f"{passed:6.0f} s: {self.done.total()} faults, {self.uncoupled} times not coupled again in time"
 
     def _look_round(self) -> None:
-        """Open every page and view and fly to the landing once: what is first made then is no growth."""
+        """Fill what is kept up to a number, open every page and view, fly to the landing once: no growth."""
+        for number in range(_SAID):
+            self.program.bus.event(Severity.INFO, f"Said before the soak begins, {number} of {_SAID}.")
+            if number % 10 == 0:
+                self._pass(0.1)
         self._couple()
         for key in (*_KEYS, *_KEYS):
             self.program.type(key)
             self._pass(1.0)
         self._land()
-        self.program.type("\x1b")
+        self._back()
 
     def _land(self) -> None:
         end = time.monotonic() + _COUPLE_S
@@ -246,7 +252,13 @@ class Soak:
         for _ in range(8):
             self.program.type(self._draw.choice(_KEYS))
             self._pass(0.15)
-        self.program.type("\x1b")
+        self._back()
+
+    def _back(self) -> None:
+        """Go back to the flight, as an operator does, from a page and what lies over it."""
+        for _ in range(3):
+            self.program.type("\x1b")
+            self._pass(0.3)
 
     def _release(self) -> None:
         self.program.console.command(CommandKind.DISENGAGE)

@@ -266,6 +266,22 @@ def test_another_vehicle_is_told_once_and_the_silence_of_ours_with_its_end():
     assert hearing.absences == 1
 
 
+def test_a_heartbeat_that_calls_the_vehicle_another_autopilot_is_not_passed_on_and_told_once():
+    from groundstation.config import Safety
+    from groundstation.vehicle.hearing import Hearing
+
+    ours, other = (
+        heartbeat(1, mavlink.MAV_AUTOPILOT_PX4),
+        heartbeat(1, mavlink.MAV_AUTOPILOT_ARDUPILOTMEGA),
+    )
+    pump = heard(ours, other, ours)
+    assert pump.heard_t == 2
+    hearing = Hearing(pump, Safety())
+    ((_, words),) = hearing.news(2.1)
+    assert "another autopilot" in words
+    assert not list(hearing.news(2.2))
+
+
 def test_a_vehicle_that_signs_while_there_is_no_key_is_told_once():
     from groundstation.config import Safety
     from groundstation.vehicle.hearing import Hearing

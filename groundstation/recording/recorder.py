@@ -30,6 +30,8 @@ _NICENESS = 10
 def record(run: Run, bus: Bus, lifeline: Lifeline) -> None:
     """Record until the lifeline no longer holds."""
     heap.take_one_arena()
+    # Arrow's own allocator would keep what it has taken for itself: 3 to 5 MB.
+    os.environ.setdefault("ARROW_DEFAULT_MEMORY_POOL", "system")
     taps = Taps(bus)
     # Rerun takes seconds to import on a busy machine, longer than the taps hold. The heart begins to beat after it.
     opening = threading.Thread(target=importlib.import_module, args=("groundstation.recording.session",))

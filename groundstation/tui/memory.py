@@ -14,8 +14,8 @@ from textual._styles_cache import StylesCache  # pyright: ignore[reportPrivateUs
 
 from groundstation import heap
 
-# How often it is tidied, s: a page that was closed since has left some hundred kilobytes.
-TIDY_S = 5.0
+# How often it is tidied, s: what a page that was closed since has left, the next one takes again.
+TIDY_S = 10.0
 # Painting may not keep the stick's thread waiting: it asks for its turn and gets it within a millisecond.
 _SWITCH_S = 0.001
 # The young objects of some thousand frames are looked through before the old are, and all only when it is tidied.

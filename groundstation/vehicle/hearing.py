@@ -15,6 +15,10 @@ _SIGNED = (
     "The vehicle signs its messages and may refuse what is not signed; "
     "end here and start with --signing-key FILE, its key."
 )
+_CONTRADICTED = (
+    "A heartbeat in a vehicle's name calls it another autopilot than before and is not believed; "
+    "if its firmware was changed, start anew."
+)
 _SILENT = BY_FAULT[Fault.LINK_SILENT]
 
 
@@ -32,8 +36,9 @@ class Hearing:
     def __init__(self, pump: Pump, safety: Safety) -> None:
         self._pump, self._safety = pump, safety
         self._refusals = Refusals()
-        self._silent = self._told_signed = False
+        self._silent = False
         self._told: frozenset[int] = frozenset()
+        self._said: frozenset[str] = frozenset()
         self.absences = 0
 
     def news(self, now: float) -> Iterator[tuple[Severity, str]]:
@@ -51,9 +56,10 @@ class Hearing:
             self._told |= others
             for system in sorted(others):
                 yield Severity.WARNING, _another(system)
-        if self._pump.signed and not self._told_signed:
-            self._told_signed = True
-            yield Severity.WARNING, _SIGNED
+        for words, so in ((_SIGNED, self._pump.signed), (_CONTRADICTED, self._pump.contradicted)):
+            if so and words not in self._said:
+                self._said |= {words}
+                yield Severity.WARNING, words
         if words := self._refusals.news(now, self._pump.refused, heard=bool(self._pump.heard_t)):
             yield Severity.WARNING, words
 

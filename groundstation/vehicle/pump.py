@@ -27,6 +27,8 @@ _SETUP_SIGNING = 256
 # PARAM_REQUEST_READ and _LIST, PARAM_SET, and the same of PARAM_EXT: whoever asks a station for its parameters. It
 # has none, and MAVSDK's answer to a name that is no text goes to the terminal.
 _NOT_FOR_STATIONS = frozenset({20, 21, 23, 320, 321, 323})
+# What parts of a vehicle say, other stations, and what has not started yet.
+_NO_AUTOPILOTS = frozenset({mavlink.MAV_AUTOPILOT_GENERIC, mavlink.MAV_AUTOPILOT_INVALID})
 _WINDOW_S = 5.0
 _HALF = 128
 
@@ -86,6 +88,8 @@ class Pump:
             itself by a heartbeat; 0 before.
         refused: How many frames were not heard, for their signature.
         signed: The vehicle signs what it says, and there is no key.
+        contradicted: A heartbeat has come that says another autopilot than those before it. Such are not heard: what
+            is asked of a vehicle, and how, hangs on its autopilot.
         others: Systems that say they are vehicles and are not the one that is watched.
     """
 
@@ -106,13 +110,14 @@ class Pump:
         self._parser.robust_parsing = True
         self._losses = Losses()
         self._known: set[int] = set()
+        self._autopilots: dict[tuple[int, ...], int] = {}
         self._vehicle = 0
         self._lock = threading.Lock()
         self._running = True
         self._thread: threading.Thread | None = None
         self.heard_t = 0.0
         self.refused = 0
-        self.signed = False
+        self.signed = self.contradicted = False
         self.others: frozenset[int] = frozenset()
 
     def start(self, mavsdk: Mavsdk) -> None:
@@ -162,11 +167,21 @@ class Pump:
                 if self._signing and not self._signing.trusts(frame):
                     self.refused += message_number(frame) not in NEVER_SIGNED
                     continue
+                heartbeat = message if isinstance(message, mavlink.MAVLink_heartbeat_message) else None
+                if heartbeat is not None and self._contradicts(frame, heartbeat):
+                    self.contradicted = True
+                    continue
                 if message_number(frame) not in _NOT_FOR_STATIONS:
                     mavsdk.pass_received_raw_bytes(legible(frame))
-                self._watch(
-                    frame, message if isinstance(message, mavlink.MAVLink_heartbeat_message) else None
-                )
+                self._watch(frame, heartbeat)
+
+    def _contradicts(self, frame: bytes, heartbeat: mavlink.MAVLink_heartbeat_message) -> bool:
+        source, autopilot = origin(frame)[1:], heartbeat.autopilot
+        if source not in self._autopilots:
+            if autopilot not in _NO_AUTOPILOTS:
+                self._autopilots[source] = autopilot
+            return False
+        return autopilot != self._autopilots[source]
 
     def _watch(self, frame: bytes, heartbeat: mavlink.MAVLink_heartbeat_message | None) -> None:
         now = self._clock()

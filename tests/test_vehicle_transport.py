@@ -3,6 +3,8 @@
 import os
 import pty
 import socket
+import subprocess
+import sys
 import time
 
 import pytest
@@ -142,6 +144,56 @@ def test_tcpout_reconnects():
     finally:
         transport.close()
         server.close()
+
+
+# A network of its own, whose loopback is switched off and on again: packets are lost, as in the air.
+AIR = """
+import ctypes, fcntl, os, socket, struct, sys, time
+from groundstation.vehicle.transport import Url, open_transport
+
+NEW_NETWORK, SET_FLAGS, UP, LOOPBACK = 0x40000000, 0x8914, 1, 8
+
+def loopback(flags):
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as any_socket:
+        fcntl.ioctl(any_socket, SET_FLAGS, struct.pack("16sh14x", b"lo", flags))
+
+if ctypes.CDLL(None).unshare(NEW_NETWORK):
+    sys.exit(77)
+loopback(LOOPBACK | UP)
+server = socket.create_server(("127.0.0.1", 0))
+told = []
+way = open_transport(Url("tcpout", "127.0.0.1", server.getsockname()[1]), lambda _, words: told.append(words))
+vehicle = server.accept()[0]
+loopback(LOOPBACK)
+lost_t = time.monotonic()
+while not told and time.monotonic() < lost_t + 30.0:
+    way.send(b"old")
+    way.receive()
+print(f"{time.monotonic() - lost_t:.1f}", told[0])
+loopback(LOOPBACK | UP)
+server.settimeout(0.01)
+vehicle = None
+while vehicle is None and time.monotonic() < lost_t + 30.0:
+    way.receive()
+    try:
+        vehicle = server.accept()[0]
+    except TimeoutError:
+        pass
+way.send(b"new")
+print(vehicle.recv(100).decode(), told[1])
+"""
+
+
+def test_a_tcp_connection_that_nobody_answers_is_given_up_and_called_anew_and_nothing_old_comes_through():
+    with subprocess.Popen([sys.executable, "-c", AIR], stdout=subprocess.PIPE, text=True) as process:
+        said, _ = process.communicate(timeout=60)
+    if process.returncode == 77:
+        pytest.skip("a network of its own needs more rights")
+    lost, found = said.splitlines()
+    assert "has hung up" in lost
+    assert float(lost.split()[0]) < 10.0
+    assert found.startswith("new ")
+    assert "answers again" in found
 
 
 def test_tcpout_without_a_server_is_told():

@@ -30,6 +30,8 @@ _DATAGRAM = 65_536
 _PEER_SILENT_S = 5.0
 _RECONNECT_S = 1.0
 _WRITE_S = 0.05
+# A vehicle that is silent for so long is on its own in any case (`safety.link_lost_s`), ms.
+_STALLED_MS = 1_500
 
 
 class UrlError(InputError):
@@ -237,6 +239,8 @@ class TcpOut:
         connection = socket.create_connection(self._address, timeout=2.0)
         connection.settimeout(0.1)
         connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        # What nobody has confirmed by then would come late, and TCP tries ever less often: better call anew (tcp(7)).
+        connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_USER_TIMEOUT, _STALLED_MS)
         self._socket = connection
         return connection
 

@@ -8,6 +8,7 @@ import sys
 import time
 
 import pytest
+import serial
 from hypothesis import given
 from hypothesis import strategies as st
 from serial.tools.list_ports_common import ListPortInfo
@@ -223,6 +224,24 @@ def test_serial_over_a_pty_there_back_and_unplugged():
             transport.send(b"lost")
     finally:
         transport.close()
+
+
+def test_what_would_leave_a_slow_serial_port_too_late_is_lost_and_told_once(monkeypatch):
+    """A pseudo-terminal takes everything at once: how much waits is put in."""
+    waiting = iter([0, 800, 801, 864, 0])
+    monkeypatch.setattr(serial.Serial, "out_waiting", property(lambda _: next(waiting)))
+    told = []
+    controller, device = pty.openpty()
+    way = open_transport(Url("serial", os.ttyname(device), 57_600), lambda *said: told.append(said))
+    for letter in "abcde":
+        way.send(letter.encode() * 64)
+    way.close()
+    assert {*os.read(controller, 1000)} == {*b"abe"}
+    ((severity, words),) = told
+    assert severity is Severity.WARNING
+    assert "57600 baud" in words
+    os.close(controller)
+    os.close(device)
 
 
 def test_a_serial_port_that_is_not_there_is_told():

@@ -32,6 +32,11 @@ _RECONNECT_S = 1.0
 _WRITE_S = 0.05
 # A vehicle that is silent for so long is on its own in any case (`safety.link_lost_s`), ms.
 _STALLED_MS = 1_500
+# What would stand in the port's queue for longer than a setpoint may be old (`safety.setpoint_stale_s`), s, is lost
+# instead. A byte is ten bits on the line.
+_QUEUE_S, _BITS = 0.15, 10
+# The longest frame of MAVLink 2, signed, bytes.
+_LEAST_QUEUE = 293
 
 
 class UrlError(InputError):
@@ -276,6 +281,8 @@ class SerialPort:
         self._full = serial.SerialTimeoutException
         self._open = serial.Serial
         self._port: serial.Serial | None = None
+        self._most = max(int(_QUEUE_S * url.number / _BITS), _LEAST_QUEUE)
+        self._slow = False
         self._retry_t = 0.0
         try:
             self._port = self._open(url.place, url.number, timeout=0.1, write_timeout=_WRITE_S)
@@ -302,12 +309,24 @@ class SerialPort:
         port = self._port
         if port is not None:
             try:
-                port.write(data)
+                if port.out_waiting + len(data) <= self._most:
+                    port.write(data)
+                    return
             except self._full:
-                # The port cannot take more now: a radio slower than its traffic. The frame is lost, not the port.
-                return
+                pass
             except (self._error, OSError, TypeError):
                 self._lose()
+                return
+            self._tell_slow()
+
+    def _tell_slow(self) -> None:
+        """The line is slower than its traffic: the frame is lost, not the port. Told once."""
+        if not self._slow:
+            self._slow = True
+            words = f"Serial port {self._url.place} is too slow at {self._url.number} baud, messages are lost"
+            self._tell(
+                Severity.WARNING, f"{words}; see `rates` in groundstation.toml, or set both ends faster."
+            )
 
     def close(self) -> None:
         """See `Transport`."""

@@ -303,8 +303,9 @@ def test_a_silent_vehicle_is_told_by_a_real_link(tmp_path: Path) -> None:
     from groundstation.vehicle.asleep import Sleep
     from groundstation.vehicle.conversation import Conversation
     from groundstation.vehicle.gate import Gate
+    from groundstation.vehicle.open_transport import open_transport
     from groundstation.vehicle.pump import Pump
-    from groundstation.vehicle.transport import Url, open_transport
+    from groundstation.vehicle.transport import Url
 
     row = BY_FAULT[Fault.LINK_SILENT]
     run = msgspec.structs.replace(canned_run(), run_id=new_run_id())

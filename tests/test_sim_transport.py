@@ -8,7 +8,8 @@ import tty
 
 import pytest
 
-from groundstation.vehicle import transport as ground
+from groundstation.vehicle.open_transport import open_transport as open_ground
+from groundstation.vehicle.transport import parse_url as ground_url
 from sim.process.transport import (
     PEER_S,
     REFUSED_S,
@@ -402,11 +403,11 @@ def test_the_ground_stations_urls_match(vehicle, station):
         probe.bind(("127.0.0.1", 0))
         port = probe.getsockname()[1]
     if station == "udpin":
-        there = ground.open_transport(ground.parse_url(f"udpin://0.0.0.0:{port}"))
+        there = open_ground(ground_url(f"udpin://0.0.0.0:{port}"))
         here = opened(f"{vehicle}://127.0.0.1:{port}")
     else:
         here = opened(f"{vehicle}://{port}")
-        there = ground.open_transport(ground.parse_url(f"{station}://127.0.0.1:{port}"))
+        there = open_ground(ground_url(f"{station}://127.0.0.1:{port}"))
         there.send(b"hello")
         assert wait_for(here) == b"hello"
     here.send(b"from the vehicle")

@@ -14,10 +14,11 @@ from pymavlink import mavutil
 from pymavlink.dialects.v20 import common as mavlink
 
 from groundstation.vehicle.gate import Gate
+from groundstation.vehicle.open_transport import open_transport
 from groundstation.vehicle.pump import Losses, Pump
 from groundstation.vehicle.signing import Signing
 from groundstation.vehicle.tlog import TlogWriter
-from groundstation.vehicle.transport import Url, open_transport
+from groundstation.vehicle.transport import Url
 
 
 def count(sequence):

@@ -15,14 +15,9 @@ from serial.tools.list_ports_common import ListPortInfo
 
 from groundstation.messages import Severity
 from groundstation.vehicle import usb_port
-from groundstation.vehicle.transport import (
-    SerialPort,
-    TransportError,
-    Url,
-    UrlError,
-    open_transport,
-    parse_url,
-)
+from groundstation.vehicle.open_transport import open_transport
+from groundstation.vehicle.serial_port import SerialPort
+from groundstation.vehicle.transport import TransportError, Url, UrlError, parse_url
 
 
 def received(transport, within_s=5.0) -> bytes:
@@ -150,7 +145,8 @@ def test_tcpout_reconnects():
 # A network of its own, whose loopback is switched off and on again: packets are lost, as in the air.
 AIR = """
 import ctypes, fcntl, os, socket, struct, sys, time
-from groundstation.vehicle.transport import Url, open_transport
+from groundstation.vehicle.open_transport import open_transport
+from groundstation.vehicle.transport import Url
 
 NEW_NETWORK, SET_FLAGS, UP, LOOPBACK = 0x40000000, 0x8914, 1, 8
 

@@ -22,12 +22,13 @@ from groundstation.run import Run
 from groundstation.vehicle.asleep import Sleep
 from groundstation.vehicle.conversation import Conversation
 from groundstation.vehicle.gate import Gate
+from groundstation.vehicle.open_transport import open_transport
 from groundstation.vehicle.pump import Pump
 from groundstation.vehicle.signed_times import TimesKeeper, read_times
 from groundstation.vehicle.signing import Signing, read_key
 from groundstation.vehicle.telemetry import Notes
 from groundstation.vehicle.tlog import TlogWriter
-from groundstation.vehicle.transport import TransportError, open_transport, parse_url
+from groundstation.vehicle.transport import TransportError, parse_url
 
 ROLE = "link"
 # MAV_COMP_ID_MISSIONPLANNER: the ground station's usual component, with the usual GCS system id.

@@ -14,6 +14,15 @@ PATIENCE_S = 20.0
 VEHICLE = 7
 
 
+class Clock:
+    """A time that stands still until it is moved."""
+
+    now = 100.0
+
+    def __call__(self) -> float:
+        return self.now
+
+
 class Wire:
     """MAVSDK as the link has it, and the one vehicle it hears.
 

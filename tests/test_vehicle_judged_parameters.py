@@ -6,7 +6,7 @@ import struct
 from collections.abc import Iterator
 
 import pytest
-from mavsdk_wire import VEHICLE, Wire
+from mavsdk_wire import VEHICLE, Clock, Wire
 from pymavlink.dialects.v20 import common as m
 
 from groundstation.vehicle.judged_parameters import JudgedParameters, Told
@@ -14,13 +14,6 @@ from groundstation.vehicle.px4 import JUDGED
 
 LOSS, ACTION = "COM_OF_LOSS_T", "COM_OBL_RC_ACT"
 WANTED = tuple(each for each in JUDGED if each.name in {LOSS, ACTION})
-
-
-class Clock:
-    now = 100.0
-
-    def __call__(self) -> float:
-        return self.now
 
 
 @pytest.fixture

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 import pytest
 from mavsdk.plugins.action import ActionResult
 from mavsdk.plugins.param import Param
-from mavsdk_wire import VEHICLE, Wire
+from mavsdk_wire import VEHICLE, Clock, Wire
 from pymavlink.dialects.v20 import common as m
 
 from groundstation.messages import CommandKind
@@ -18,13 +18,6 @@ from groundstation.vehicle.gate import Gate
 from groundstation.vehicle.takeoff_altitude import TakeoffAltitude
 
 NAME = "MIS_TAKEOFF_ALT"
-
-
-class Clock:
-    now = 100.0
-
-    def __call__(self) -> float:
-        return self.now
 
 
 @pytest.fixture

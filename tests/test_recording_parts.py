@@ -5,6 +5,7 @@ from __future__ import annotations
 import fcntl
 import os
 import shutil
+from pathlib import Path
 
 import msgspec
 import numpy as np
@@ -17,6 +18,7 @@ from groundstation.config import Recording, Settings
 from groundstation.messages import HANDLE, PILOT_STATE, Severity
 from groundstation.recording import lanes, room, schema
 from groundstation.recording.batch import Batch
+from groundstation.recording.file import free_ended
 from groundstation.recording.parts import is_part, part_path, parts_of
 from groundstation.recording.session import Session
 from groundstation.review.flight import Flight
@@ -63,6 +65,22 @@ def test_a_long_flight_goes_on_in_parts_that_are_complete_and_one_flight(long_fl
     # What a state was does not begin anew with a part.
     assert len(flight.states(lanes.PHASE)) == 1
     assert Flight(parts[1]).mission == flight.mission
+
+
+def threads() -> int:
+    return sum(1 for _ in Path("/proc/self/task").iterdir())
+
+
+def test_a_part_that_ended_leaves_no_thread_behind(tmp_path):
+    """Each kept two threads and 4 MB, hour after hour."""
+    record(tmp_path / "before", Recording(part_mb=100.0, warn_gb=0.0))
+    free_ended()
+    before = threads()
+    path, _ = record(tmp_path / "flight", Recording(part_mb=0.5, warn_gb=0.0))
+    assert len(parts_of(path)) > 3
+    free_ended()
+    # The viewer's layout is converted once a flight, and keeps two.
+    assert threads() <= before + 2
 
 
 def test_parts_are_one_flight_in_the_list_and_in_the_viewer(long_flight):

@@ -27,10 +27,14 @@ MISSION = Mission(
     obstacle=(Sphere("pillar", (4.0, 1.5, 2.0), 0.3),),
 )
 
+FREE = Mission(schema=1, name="free", title="Nothing is asked for")
 
-def flown(y: float = 0.0, force: float = 2.0, error: float = 0.3, changed: float = 0.1) -> Measurer:
+
+def flown(
+    y: float = 0.0, force: float = 2.0, error: float = 0.3, changed: float = 0.1, mission: Mission = MISSION
+) -> Measurer:
     """Fly the mission along y, 1 m/s, to where it ends."""
-    measurer = Measurer(MISSION, RADIUS)
+    measurer = Measurer(mission, RADIUS)
     t = 0.0
 
     def go(x: float, z: float, *, coupled: bool, armed: bool = True, speed: float = 1.0) -> None:
@@ -71,6 +75,26 @@ def test_a_flight_has_the_numbers_it_was_flown_with():
     assert found.collisions == 0
     assert found.smoothness < -1.0
     assert math.isnan(found.gates_missed)
+
+
+def test_a_flight_that_is_not_judged_has_its_numbers_and_its_way_and_keeps_nothing_else():
+    """Hours of flying free take no more memory, and no longer to measure."""
+    judged, free = flown(y=0.1), flown(y=0.1, mission=FREE)
+    assert len(judged.hand_rows) > len(free.hand_rows) == len(free.vehicle_rows) == 0
+    one, other = judged.measures(), free.measures()
+    for name in ("time_s", "rms_error_m", "smoothness", "disagreement_mps", "effort_n"):
+        assert getattr(one, name) == getattr(other, name)
+    assert free.track() == judged.track()
+
+
+def test_the_way_has_a_place_every_so_often_and_stands_where_nobody_leads():
+    track = flown(y=0.1).track()
+    lasted = STEP * (100 + 400 + 30 + 100 + 101 + 1)
+    assert len(track.points) == pytest.approx(lasted / track.every_s, abs=1)
+    # Two seconds of climbing by itself, eight along x, and half a second there.
+    for at, x in ((0.0, STEP), (1.9, STEP), (6.0, 4.0), (10.2, 8.0), (lasted - 0.1, 10.0)):
+        assert track.points[int(at / track.every_s)][0] == pytest.approx(x, abs=0.25)
+    assert Measurer(MISSION, RADIUS).track().points == ()
 
 
 def test_before_take_off_nothing_is_measured():

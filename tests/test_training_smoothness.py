@@ -1,13 +1,21 @@
 """The spectral arc length: the values of shapes that are known, and what it must not depend on."""
 
 import math
+import tracemalloc
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from groundstation.training.smoothness import RATE_HZ, evenly, parted, smoothness, spectral_arc_length
+from groundstation.training.smoothness import (
+    LONGEST_S,
+    RATE_HZ,
+    Smoothness,
+    evenly,
+    parted,
+    spectral_arc_length,
+)
 
 
 def minimum_jerk(seconds: float) -> np.ndarray:
@@ -67,19 +75,63 @@ def rows(seconds: float, start: float = 0.0, every: float = 0.02) -> list[tuple[
     return [(start + float(at), float(np.interp(at, np.arange(len(speed)) / RATE_HZ, speed))) for at in t]
 
 
+def smoothness(*stretches: list[tuple[float, float]]) -> float:
+    """Return the smoothness of stretches with a minute between them."""
+    found = Smoothness(gap_s=1.0)
+    for number, stretch in enumerate(stretches):
+        for t, speed in stretch:
+            found.add(60.0 * number + t, speed)
+    return found.value()
+
+
 def test_rows_come_as_they_come():
     # Telemetry at 30 Hz of the same movement tells the same.
-    assert smoothness([rows(4.0, every=1 / 30)]) == pytest.approx(smoothness([rows(4.0)]), abs=0.02)
-    assert len(evenly(rows(4.0, every=0.1))) == pytest.approx(4.0 * RATE_HZ, abs=6)
+    assert smoothness(rows(4.0, every=1 / 30)) == pytest.approx(smoothness(rows(4.0)), abs=0.02)
+    assert len(evenly(*zip(*rows(4.0, every=0.1), strict=True))) == pytest.approx(4.0 * RATE_HZ, abs=6)
+
+
+def wavering(seconds: float) -> list[tuple[float, float]]:
+    return [(t, 1.0 + math.sin(9.0 * t)) for t, _ in rows(seconds)]
 
 
 def test_stretches_count_by_how_long_they_last():
-    one, other = rows(4.0), [(t, 1.0 + math.sin(9.0 * t)) for t, _ in rows(2.0)]
-    apart = parted([*one, *((t + 60.0, v) for t, v in other)], 1.0)
-    assert [len(stretch) for stretch in apart] == [len(one), len(other)]
-    each = smoothness([one]), smoothness([other])
+    one, other = rows(4.0), wavering(2.0)
+    each = smoothness(one), smoothness(other)
     lasted = one[-1][0], other[-1][0]
     mean = (each[0] * lasted[0] + each[1] * lasted[1]) / sum(lasted)
-    assert smoothness(apart) == pytest.approx(mean)
-    assert math.isnan(smoothness([rows(0.5)]))
+    assert smoothness(one, other) == pytest.approx(mean)
+    assert math.isnan(smoothness(rows(0.5)))
+    assert math.isnan(smoothness())
+
+
+def test_it_is_the_same_whenever_one_looks():
+    looked, found = Smoothness(gap_s=1.0), Smoothness(gap_s=1.0)
+    for t, speed in (*rows(4.0), *((t + 9.0, speed) for t, speed in wavering(3.0))):
+        looked.add(t, speed)
+        looked.value()
+        found.add(t, speed)
+    assert looked.value() == found.value()
+
+
+def test_a_long_stretch_is_judged_in_parts():
+    """An hour coupled takes no longer to judge than a few minutes, and no more memory."""
+    part = smoothness(wavering(LONGEST_S))
+    found = Smoothness(gap_s=1.0)
+    before = after = 0
+    tracemalloc.start()
+    for row in range(round(6 * LONGEST_S * RATE_HZ)):
+        t = row / RATE_HZ
+        found.add(t, 1.0 + math.sin(9.0 * t))
+        if t == LONGEST_S - 1.0:
+            before = tracemalloc.get_traced_memory()[0]
+    after = tracemalloc.get_traced_memory()[0]
+    tracemalloc.stop()
+    assert found.value() == pytest.approx(part, rel=0.1)
+    assert after <= before + 10_000
+
+
+def test_rows_part_where_time_is_missing():
+    one, other = rows(4.0), wavering(2.0)
+    apart = parted([*one, *((t + 60.0, v) for t, v in other)], 1.0)
+    assert [len(stretch) for stretch in apart] == [len(one), len(other)]
     assert parted([], 1.0) == []

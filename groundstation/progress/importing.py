@@ -8,7 +8,7 @@ from pathlib import Path
 
 from groundstation.errors import InputError
 from groundstation.progress.flown import Flown
-from groundstation.progress.judging import device_word, judged, track_of
+from groundstation.progress.judging import device_word, judged
 from groundstation.progress.store import Store
 from groundstation.progress.words import counted
 from groundstation.review.flight import Flight
@@ -79,4 +79,4 @@ def flights_in(path: Path) -> Iterator[tuple[Flown, Track]]:
     )
     landed: list[Measurer] = attempts_of(flight, mission).landed
     for attempt, measurer in enumerate(landed, 1):
-        yield judged(known, attempt, measurer, flight.par), track_of(measurer)
+        yield judged(known, attempt, measurer, flight.par), measurer.track()

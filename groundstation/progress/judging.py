@@ -7,16 +7,12 @@ import math
 import msgspec
 
 from groundstation import __version__
-from groundstation.frames import Vector3
 from groundstation.progress.flown import Flown
 from groundstation.run import Run
 from groundstation.training.judgement import judgement_of
 from groundstation.training.measurer import Measurer
-from groundstation.training.measures import Measures, Track
+from groundstation.training.measures import Measures
 from groundstation.training.reference import digest_of
-
-# Of a track, s: five rows a second show a multirotor's way.
-_EVERY_S = 0.2
 
 
 def flight_of(run: Run) -> Flown:
@@ -63,18 +59,3 @@ def judged(known: Flown, attempt: int, measurer: Measurer, par: Measures | None)
         parts={part.name: part.share for part in score.parts} if score else {},
         measures={name: value for name, value in values.items() if math.isfinite(value)},
     )
-
-
-def track_of(measurer: Measurer) -> Track:
-    """Return where a flight went from take-off on; while the hand did not lead it stood, or was led by others."""
-    rows = measurer.vehicle_rows
-    if not rows:
-        return Track(_EVERY_S)
-    points: list[Vector3] = []
-    at = 0
-    for step in range(int((measurer.end_t - measurer.took_off_t) / _EVERY_S) + 1):
-        t = measurer.took_off_t + step * _EVERY_S
-        while at + 1 < len(rows) and rows[at + 1].t <= t:
-            at += 1
-        points.append(rows[at].position)
-    return Track(_EVERY_S, tuple(points))

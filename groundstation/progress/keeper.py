@@ -11,7 +11,7 @@ import threading
 
 from groundstation.errors import InputError
 from groundstation.progress.flown import Flown
-from groundstation.progress.judging import flight_of, judged, track_of
+from groundstation.progress.judging import flight_of, judged
 from groundstation.progress.opening import store_in
 from groundstation.progress.store import Store
 from groundstation.run import Run
@@ -46,7 +46,7 @@ class Keeper:
             self._seen += 1
             if self._run.pilot:
                 flown = judged(self._known, self._seen, measurer, self._run.par)
-                self._start(flown, track_of(measurer))
+                self._start(flown, measurer.track())
         words: list[str] = []
         while not self._words.empty():
             words.append(self._words.get())

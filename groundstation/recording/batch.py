@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections import defaultdict
+from collections.abc import Iterable, Iterator
 from typing import Any, TypeVar, cast
 
 from groundstation.bus import Bus, Subscriber
@@ -81,6 +82,21 @@ class Batch:
         before = len(kept)
         kept.extend(records)
         return len(kept) - before
+
+    def parts(self, longest: float) -> Iterator[Batch]:
+        """Yield it in parts of at most so long, s, in their order; what is no longer is yielded as it is.
+
+        What a large batch takes on its way into the file, Rerun keeps for itself.
+        """
+        ends = [record.t for kept in self._records.values() for record in (*kept[:1], *kept[-1:])]
+        if not ends or max(ends) - min(ends) <= longest:
+            yield self
+            return
+        first, parts = min(ends), defaultdict[int, Batch](Batch)
+        for topic in TOPICS:
+            for record in self.of(topic):
+                parts[int((record.t - first) / longest)].add(topic, (record,))
+        yield from (parts[number] for number in sorted(parts))
 
 
 class Taps:

@@ -16,6 +16,7 @@ from pathlib import Path
 
 import rerun as rr
 import rerun.blueprint as rrb
+import rerun_bindings
 
 from groundstation.failsafe import BY_FAULT, Fault
 from groundstation.recording import schema
@@ -40,13 +41,13 @@ class FlightFile:
     Args:
         path: Where it shall be. A file that is there already is left alone: this one gets a number.
         recording_id: The same for all streams of the flight.
-        blueprint: Layout it opens in.
+        blueprint: Layout it opens in; None leaves it to the viewer, or to another file of the same flight.
 
     Raises:
         RecordingError: The file cannot be made.
     """
 
-    def __init__(self, path: Path, recording_id: str, blueprint: rrb.Blueprint) -> None:
+    def __init__(self, path: Path, recording_id: str, blueprint: rrb.Blueprint | None) -> None:
         self.path, self._fd = _take(path)
         self._stream = rr.RecordingStream(schema.APPLICATION, recording_id=recording_id)
         self._failure = ""
@@ -86,6 +87,7 @@ class FlightFile:
         self._syncer.join()
         self._flush()
         self._stream.disconnect()
+        del self._stream
         with contextlib.suppress(OSError):
             os.fsync(self._fd)
         try:
@@ -106,6 +108,14 @@ class FlightFile:
             os.fsync(self._fd)
         except (RuntimeError, OSError):
             self._failure = _sentence(self.path)
+
+
+def free_ended() -> None:
+    """Give back what ended streams have taken; Rerun 0.41 keeps 4 MB and two threads of each until it is asked.
+
+    It waits for what others that still run have to send: no stream to a viewer may be open, which may never read.
+    """
+    rerun_bindings.flush_and_cleanup_orphaned_recordings()
 
 
 def _take(path: Path) -> tuple[Path, int]:

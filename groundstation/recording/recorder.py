@@ -9,13 +9,14 @@ import sys
 import threading
 import time
 import traceback
+from collections import deque
 
 from groundstation import heap
 from groundstation.bus import Bus
 from groundstation.child import Lifeline, run_child
 from groundstation.clock import Every, Pacer
 from groundstation.messages import Severity
-from groundstation.recording.batch import Taps
+from groundstation.recording.batch import Batch, Taps
 from groundstation.recording.room import make_room
 from groundstation.run import Run, start_of
 
@@ -24,6 +25,8 @@ _TURN_S = 0.05
 # Rows cost per call, not per row: large batches for the file, small ones where somebody watches.
 _BATCH_S = 0.75
 _LIVE_BATCH_S = 0.1
+# What has piled up while the process was held up goes in parts of at most so long, one a turn.
+_LONGEST_S = 1.0
 _NICENESS = 10
 
 
@@ -46,18 +49,22 @@ def record(run: Run, bus: Bus, lifeline: Lifeline) -> None:
         bus.event(Severity.INFO, f"Removed the oldest flights, {words}: over recording.folder_gb.")
     start = start_of(run.started, datetime.datetime.now().astimezone(), time.monotonic())
     session = Session(run, start, bus.event)
-    batch = Every(_LIVE_BATCH_S if run.viewer_url else _BATCH_S)
+    due = Every(_LIVE_BATCH_S if run.viewer_url else _BATCH_S)
+    waiting = deque[Batch]()
     pacer, give_back = Pacer(_TURN_S), Every(heap.GIVE_BACK_S)
     while lifeline.holds():
         if taps.drain():
             bus.event(Severity.WARNING, "The recorder was held up for seconds; handle samples are missing.")
-        if batch.due(time.monotonic()):
-            session.take(taps.take())
+        if due.due(time.monotonic()):
+            waiting.extend(taps.take().parts(_LONGEST_S))
             if give_back.due(time.monotonic()):
                 heap.give_back()
+        if waiting:
+            session.take(waiting.popleft())
         pacer.wait()
     taps.drain()
-    session.take(taps.take())
+    for batch in (*waiting, *taps.take().parts(_LONGEST_S)):
+        session.take(batch)
     session.close()
 
 

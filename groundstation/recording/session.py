@@ -6,6 +6,8 @@ import threading
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
+import rerun.blueprint as rrb
+
 from groundstation.conditions import Conditions
 from groundstation.failsafe import BY_FAULT, Fault
 from groundstation.messages import DEVICE_REPORT, Severity
@@ -16,7 +18,7 @@ from groundstation.recording.changes import Changes
 from groundstation.recording.columns import Heartbeats, OnChange, number_chunks, number_columns
 from groundstation.recording.echoes import Echoes
 from groundstation.recording.feed import LiveFeed
-from groundstation.recording.file import FlightFile, RecordingError
+from groundstation.recording.file import FlightFile, RecordingError, free_ended
 from groundstation.recording.gauges import Gauges
 from groundstation.recording.ghost import Ghost
 from groundstation.recording.incidents import Incidents
@@ -102,14 +104,14 @@ class Session:
         self._limits = run.settings.recording
         self._translator = Translator(run, start)
         self._tell = tell
-        self._layout = blueprint(run.mission)
+        layout = blueprint(run.mission)
         self._file: FlightFile | None = None
         self._parts = 1
         self._ending: list[threading.Thread] = []
         if to_file:
-            self._open(run.recording)
+            self._open(run.recording, layout)
         self._first = self._file.path if self._file else run.recording
-        self._feed = LiveFeed(run.viewer_url, run.run_id, self._layout) if run.viewer_url else None
+        self._feed = LiveFeed(run.viewer_url, run.run_id, layout) if run.viewer_url else None
         self._slow_viewer = self._told_full = False
         self._spread(list(self._translator.opening()))
 
@@ -129,9 +131,10 @@ class Session:
         for thread in self._ending:
             thread.join()
 
-    def _open(self, path: Path) -> None:
+    def _open(self, path: Path, layout: rrb.Blueprint | None = None) -> None:
+        """Begin a file; the first has the layout for all: Rerun keeps 2 MB of each that it is given."""
         try:
-            self._file = FlightFile(path, self._run.run_id, self._layout)
+            self._file = FlightFile(path, self._run.run_id, layout)
         except RecordingError as error:
             self._file = None
             self._tell(Severity.ALARM, str(error))
@@ -140,7 +143,7 @@ class Session:
         """Go on in a next part where this one is large; say once that the disk gets full."""
         if file.size > self._limits.part_mb * _MB:
             # To put a part in order takes seconds: beside the loop that reads the bus.
-            thread = threading.Thread(target=self._end, args=(file,), name="part")
+            thread = threading.Thread(target=self._end_part, args=(file,), name="part")
             self._ending.append(thread)
             thread.start()
             self._parts += 1
@@ -151,6 +154,11 @@ class Session:
         if _DISK_LOW.holds(c, self._run.settings.safety) and not self._told_full:
             self._told_full = True
             self._tell(_DISK_LOW.severity, f"The disk of {file.path.parent} has {_DISK_LOW.say(c)}.")
+
+    def _end_part(self, file: FlightFile) -> None:
+        self._end(file)
+        if self._feed is None:
+            free_ended()
 
     def _end(self, file: FlightFile) -> None:
         """End a file and put it in order."""

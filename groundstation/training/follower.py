@@ -29,7 +29,7 @@ from groundstation.training.judgement import Judgement, judgement_of
 from groundstation.training.measurer import HandSight, Measurer, VehicleSight
 from groundstation.training.measures import Measures
 from groundstation.training.mission import Mission
-from groundstation.training.score import score_of
+from groundstation.training.score import Score, score_of
 from groundstation.training.sights import Sights
 from groundstation.training.story import Moment
 from groundstation.training.telling import so_far
@@ -51,6 +51,7 @@ class MissionFollower:
 
     Attributes:
         attempts: The run's flights.
+        score: Of the flight under way as far as it has come; None before, and where it is not judged.
         judgement: Of the last that landed; None before.
         complete: No record of a flight was missed.
     """
@@ -61,7 +62,8 @@ class MissionFollower:
         self.complete = True
         self._bus, self._par = bus, par
         self._sights = Sights()
-        self._score, self._next_score = b"", 0.0
+        self.score: Score | None = None
+        self._words, self._next_score = b"", 0.0
         self._states = bus.subscriber(VEHICLE_STATE)
         self._statuses = bus.subscriber(VEHICLE_STATUS)
         self._pilots = bus.subscriber(PILOT_STATE)
@@ -85,8 +87,9 @@ class MissionFollower:
         """Take note of what is new, and tell the bus how it is going."""
         self._read()
         self._conductor.look(self.director, view.t)
+        self._judge(view.t)
         progress = self.director.progress(view.t)
-        progress.score = self._score_so_far(view.t)
+        progress.score = self._words
         self._progress.send(progress)
 
     def finish(self) -> None:
@@ -94,13 +97,14 @@ class MissionFollower:
         self._read()
         self._show(self._sights.rest())
 
-    def _score_so_far(self, t: float) -> bytes:
-        """Return the score in words, for an instructor; it takes some milliseconds, so not every time."""
-        if t >= self._next_score:
-            self._next_score = t + _SCORE_EVERY_S
-            score = score_of(self.director.mission, self.measurer.measures(), self._par)
-            self._score = fit(so_far(score), SCORE_TEXT) if score and self.director.elapsed(t) > 0.0 else b""
-        return self._score
+    def _judge(self, t: float) -> None:
+        """Work out the score so far, and its words for an instructor; it takes some milliseconds: not every time."""
+        director = self.director
+        if t < self._next_score or not director.mission.judged:
+            return
+        self._next_score = t + _SCORE_EVERY_S
+        self.score = score_of(director.mission, self.measurer.measures(), self._par)
+        self._words = fit(so_far(self.score), SCORE_TEXT) if self.score and director.elapsed(t) > 0.0 else b""
 
     def _read(self) -> None:
         for done in sorted(self._interventions.drain(), key=lambda answer: answer.t):

@@ -7,15 +7,15 @@ numbers, to the last bit.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from typing import NamedTuple
 
 from groundstation.frames import Vector3, Vector4
 from groundstation.training.director import Director, Stage
-from groundstation.training.measures import Measures
+from groundstation.training.measures import Measures, Track
 from groundstation.training.mission import Mission
-from groundstation.training.rows import Rows
-from groundstation.training.smoothness import parted, smoothness
+from groundstation.training.rows import HandRow, Rows, VehicleRow
+from groundstation.training.smoothness import Smoothness
+from groundstation.training.track import TrackKeeper
 from groundstation.training.way import off_the_way, way_of
 from sim.environment.world import World
 
@@ -60,46 +60,22 @@ class HandSight(NamedTuple):
     on_leash: bool = False
 
 
-class VehicleRow(NamedTuple):
-    """What is kept of a `VehicleSight` while the hand leads: speed in m/s, clearance and way off in m."""
+class Mean:
+    """The mean of what was added; what is not finite is not known, and left out."""
 
-    t: float
-    position: Vector3
-    speed: float
-    clearance: float
-    off_the_way: float
+    def __init__(self) -> None:
+        self._sum, self._count = 0.0, 0
 
-    @staticmethod
-    def numbers(row: VehicleRow) -> Sequence[float]:
-        """Return a row as seven numbers."""
-        return row.t, *row.position, row.speed, row.clearance, row.off_the_way
+    def add(self, value: float) -> None:
+        """Take a value in."""
+        if math.isfinite(value):
+            self._sum += value
+            self._count += 1
 
-    @classmethod
-    def of(cls, numbers: Sequence[float]) -> VehicleRow:
-        """Return the row that seven numbers stand for."""
-        t, x, y, z, speed, clearance, off_the_way = numbers
-        return cls(t, (x, y, z), speed, clearance, off_the_way)
-
-
-class HandRow(NamedTuple):
-    """What is kept of a `HandSight` while the hand leads: |p̃| in m, disagreement in m/s, force in N."""
-
-    t: float
-    error: float
-    disagreement: float
-    force: float
-    on_leash: bool
-
-    @staticmethod
-    def numbers(row: HandRow) -> Sequence[float]:
-        """Return a row as five numbers."""
-        return row
-
-    @classmethod
-    def of(cls, numbers: Sequence[float]) -> HandRow:
-        """Return the row that five numbers stand for."""
-        t, error, disagreement, force, on_leash = numbers
-        return cls(t, error, disagreement, force, bool(on_leash))
+    @property
+    def value(self) -> float:
+        """NaN before the first."""
+        return self._sum / self._count if self._count else math.nan
 
 
 class Measurer:
@@ -113,7 +89,7 @@ class Measurer:
     Attributes:
         director: Follows the mission.
         coupled: The vehicle follows the hand.
-        vehicle_rows, hand_rows: What was kept, in the order of time.
+        vehicle_rows, hand_rows: What its story is told from, in the order of time; none where it is not judged.
         collisions: When obstacles were touched, s, and which.
         took_off_t, end_t: When it took off, and landed or was seen last, s; NaN before.
         held_t: When the target had been held for long enough, s; NaN before.
@@ -128,6 +104,9 @@ class Measurer:
         self.director = Director(mission, self._world, radius)
         self.vehicle_rows = Rows(VehicleRow.numbers, VehicleRow.of, 7)
         self.hand_rows = Rows(HandRow.numbers, HandRow.of, 5)
+        self._track = TrackKeeper()
+        self._smoothness = Smoothness(_GAP_S)
+        self._off_squared, self._disagreement, self._effort = Mean(), Mean(), Mean()
         self.collisions: list[tuple[float, str]] = []
         self.took_off_t = self.end_t = self.held_t = math.nan
         self.place: Vector3 = (0.0, 0.0, 0.0)
@@ -148,7 +127,11 @@ class Measurer:
             self.collisions.append((sight.t, self.nearest((x, y, z))))
         if self.coupled and self.flying:
             speed = math.hypot(*sight.velocity)
-            self.vehicle_rows.append(VehicleRow(sight.t, (x, y, z), speed, director.clearance, off))
+            self._smoothness.add(sight.t, speed)
+            self._off_squared.add(off**2)
+            self._track.add(sight.t - self.took_off_t, (x, y, z))
+            if director.mission.judged:
+                self.vehicle_rows.append(VehicleRow(sight.t, (x, y, z), speed, director.clearance, off))
 
     def hand(self, sight: HandSight) -> None:
         """Take note of the hand."""
@@ -157,32 +140,35 @@ class Measurer:
         if not (sight.coupled and self.flying and math.isfinite(error + force)):
             return
         self.director.controller(sight.error, sight.force)
-        self.hand_rows.append(HandRow(sight.t, error, sight.disagreement, force, sight.on_leash))
+        self._disagreement.add(sight.disagreement)
+        self._effort.add(force)
+        if self.director.mission.judged:
+            self.hand_rows.append(HandRow(sight.t, error, sight.disagreement, force, sight.on_leash))
 
     def measures(self) -> Measures:
         """Return the flight in numbers, as far as it has come."""
         director, figures = self.director, self.director.figures
         if director.stage is Stage.WAITING:
             return Measures()
-        speeds = [(row.t, row.speed) for row in self.vehicle_rows]
-        off = [row.off_the_way**2 for row in self.vehicle_rows if not math.isnan(row.off_the_way)]
         clearance = figures.least_clearance
         return Measures(
             time_s=figures.duration,
             reached=director.leg / director.legs if director.legs else math.nan,
             rms_error_m=figures.rms_error,
-            path_error_m=math.sqrt(_mean(off)),
+            path_error_m=math.sqrt(self._off_squared.value),
             final_error_m=figures.final_error,
             landing_error_m=figures.landing_error,
             least_clearance_m=clearance if math.isfinite(clearance) else math.nan,
             collisions=figures.collisions,
             gates_missed=figures.gates_missed / figures.gates if figures.gates else math.nan,
-            smoothness=smoothness(parted(speeds, _GAP_S)),
-            disagreement_mps=_mean(
-                [row.disagreement for row in self.hand_rows if math.isfinite(row.disagreement)]
-            ),
-            effort_n=_mean([row.force for row in self.hand_rows]),
+            smoothness=self._smoothness.value(),
+            disagreement_mps=self._disagreement.value,
+            effort_n=self._effort.value,
         )
+
+    def track(self) -> Track:
+        """Return where it went from take-off on; while the hand did not lead it stood, or was led by others."""
+        return self._track.until(self.end_t - self.took_off_t)
 
     def nearest(self, place: Vector3) -> str:
         """Return the name of the obstacle nearest to a place; "" without any."""
@@ -206,7 +192,3 @@ class Measurer:
         stage = self.director.stage
         on_it = self.flying and stage not in {Stage.TAKING_OFF, Stage.RETURNING, Stage.FREE}
         return off_the_way(self._way, leg, place) if on_it else math.nan
-
-
-def _mean(values: list[float]) -> float:
-    return math.fsum(values) / len(values) if values else math.nan

@@ -8,6 +8,8 @@ a motion is, only on its shape: a speed that rises and falls once is smooth, one
 from __future__ import annotations
 
 import math
+from array import array
+from collections.abc import Sequence
 from itertools import pairwise
 
 import numpy as np
@@ -22,8 +24,8 @@ CUT_OFF_HZ = 10.0
 THRESHOLD = 0.05
 # The spectrum is drawn this many times finer than the motion's length gives it, as a power of two.
 _FINER = 4
-# A shorter stretch of motion has no shape worth telling, s.
-SHORTEST_S = 1.0
+# A shorter stretch of motion has no shape worth telling, s; a longer one is judged in parts, each in milliseconds.
+SHORTEST_S, LONGEST_S = 1.0, 300.0
 
 
 def spectral_arc_length(speed: Numbers, rate_hz: float = RATE_HZ) -> float:
@@ -52,31 +54,47 @@ def spectral_arc_length(speed: Numbers, rate_hz: float = RATE_HZ) -> float:
     return -float(np.sum(np.hypot(1.0 / last, steps)))
 
 
-def smoothness(stretches: list[list[tuple[float, float]]]) -> float:
-    """Return the mean spectral arc length of stretches of motion, each weighted by how long it lasted.
+class Smoothness:
+    """The smoothness of a flight as it comes: the mean of its stretches', each weighted by how long it lasted.
+
+    A stretch ends where rows lie further apart than `gap_s`, and after `LONGEST_S`: so neither what is kept of it nor
+    what it takes to judge it grows with the flight.
 
     Args:
-        stretches: Each a row of time (s, ascending) and speed (m/s), however they came.
-
-    Returns:
-        NaN where none is long enough.
+        gap_s: Rows of one stretch of motion lie no further apart, s.
     """
-    weight = total = 0.0
-    for stretch in stretches:
-        lasted = stretch[-1][0] - stretch[0][0] if stretch else 0.0
-        if lasted < SHORTEST_S:
-            continue
-        length = spectral_arc_length(evenly(stretch))
-        if math.isfinite(length):
-            weight += lasted
-            total += lasted * length
-    return total / weight if weight else math.nan
+
+    def __init__(self, gap_s: float) -> None:
+        self._gap_s = gap_s
+        self._t, self._speed = array("d"), array("d")
+        self._weight = self._total = 0.0
+
+    def add(self, t: float, speed: float) -> None:
+        """Take in a row: time (s, ascending) and speed (m/s), however often they come."""
+        if self._t and (t - self._t[-1] > self._gap_s or t - self._t[0] > LONGEST_S):
+            self._weight, self._total = self._with_the_last()
+            self._t, self._speed = array("d"), array("d")
+        self._t.append(t)
+        self._speed.append(speed)
+
+    def value(self) -> float:
+        """Return it up to now; NaN where no stretch was long enough."""
+        weight, total = self._with_the_last()
+        return total / weight if weight else math.nan
+
+    def _with_the_last(self) -> tuple[float, float]:
+        """Return the sum of weights and of weighted lengths, with the stretch that is not ended yet."""
+        lasted = self._t[-1] - self._t[0] if self._t else 0.0
+        length = spectral_arc_length(evenly(self._t, self._speed)) if lasted >= SHORTEST_S else math.nan
+        if not math.isfinite(length):
+            return self._weight, self._total
+        return self._weight + lasted, self._total + lasted * length
 
 
-def evenly(stretch: list[tuple[float, float]]) -> Numbers:
+def evenly(t: Sequence[float], speed: Sequence[float]) -> Numbers:
     """Return the speeds of a stretch at even times, `RATE_HZ`, on straight lines between those that are known."""
-    t, speed = np.array(stretch, np.float64).T
-    return np.interp(np.arange(0.0, t[-1] - t[0], 1.0 / RATE_HZ), t - t[0], speed)
+    since = np.array(t, np.float64) - t[0]
+    return np.interp(np.arange(0.0, since[-1], 1.0 / RATE_HZ), since, np.array(speed, np.float64))
 
 
 def parted(rows: list[tuple[float, float]], gap_s: float) -> list[list[tuple[float, float]]]:

@@ -13,7 +13,8 @@ from typing import NamedTuple, TypeVar
 import numpy as np
 
 from groundstation.frames import Vector3
-from groundstation.training.measurer import HandRow, Measurer, VehicleRow
+from groundstation.training.measurer import Measurer
+from groundstation.training.rows import HandRow, VehicleRow
 from groundstation.training.score import UNFINISHED, Part, Score
 from groundstation.training.smoothness import RATE_HZ, evenly, parted
 
@@ -162,7 +163,7 @@ def _smoothness(part: Part, measurer: Measurer) -> Told:
     del part
     jerkiest: Stretch | None = None
     for stretch in parted([(row.t, row.speed) for row in measurer.vehicle_rows], _WINDOW_S):
-        speed = evenly(stretch)
+        speed = evenly(*zip(*stretch, strict=True))
         window = round(_WINDOW_S * RATE_HZ)
         if len(speed) < 2 * window:
             continue

@@ -232,7 +232,7 @@ class FlightApp(Schooling):
             track=self._track,
             history=self._history,
             figures=director.figures if director is not None else None,
-            score=self._score,
+            score=self.score,
             judgement=self._follower.judgement if self._follower is not None else None,
             guide=guide,
             coaching=coaching,

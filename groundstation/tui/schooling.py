@@ -16,14 +16,12 @@ from groundstation.training.coach import LiveCoach
 from groundstation.training.director import Director, Stage
 from groundstation.training.follower import MissionFollower
 from groundstation.training.guide import Guide, guide_of
-from groundstation.training.score import Score, score_of
+from groundstation.training.score import Score
 from groundstation.training.workload import Workload
 from groundstation.tui.acts import armed, coupled, in_air
 from groundstation.tui.commanding import Commanding
 from groundstation.tui.frame import Reader
 from groundstation.tui.wish import Wish
-
-_JUDGE_S = 1.0
 
 
 class Schooling(Commanding):
@@ -63,8 +61,6 @@ class Schooling(Commanding):
         self._on_workload = on_workload
         self.advice: Advice | None = None
         self.wish: Wish | None = None
-        self._score: Score | None = None
-        self._next_score = 0.0
 
     @property
     def pilot(self) -> str:
@@ -76,12 +72,16 @@ class Schooling(Commanding):
         """Knows how the mission is going, if there is one."""
         return self._follower.director if self._follower is not None else None
 
+    @property
+    def score(self) -> Score | None:
+        """What the flight under way is worth so far."""
+        return self._follower.score if self._follower is not None else None
+
     def follow(self, snapshot: Snapshot) -> None:
         """Take note of what is new for the mission, and keep what has landed."""
         if self._follower is None:
             return
         self._follower.look(snapshot)
-        self._judge(self._follower, snapshot.t)
         self._keep()
 
     def guided(self, snapshot: Snapshot, *, quiet: bool) -> tuple[Guide | None, str]:
@@ -133,13 +133,6 @@ class Schooling(Commanding):
     def leave(self) -> None:
         """End the screen; a vehicle that follows the hand is left holding."""
         raise NotImplementedError
-
-    def _judge(self, follower: MissionFollower, t: float) -> None:
-        """Work out the score so far; it takes some milliseconds, so not in every frame."""
-        if t >= self._next_score:
-            self._next_score = t + _JUDGE_S
-            measurer = follower.measurer
-            self._score = score_of(measurer.director.mission, measurer.measures(), self._flight_run.par)
 
     def _keep(self) -> None:
         """Have what has landed kept; once it is, look what comes next."""

@@ -75,9 +75,9 @@ def module(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> str:
 
 def fly(spec: str, ticks: int = 1000) -> list:
     pilot, memory = Pilot(SETTINGS, INFO, controller=load_controller(spec, SETTINGS)), Memory()
-    hand = HandleState((0.05, 0.0, 0.0), ZERO3, 0.0, 0, homed=True, device_time=0.0)
     seen = []
-    for _ in range(ticks):
+    for tick in range(ticks):
+        hand = HandleState((0.05, 0.0, 0.0), ZERO3, 0.0, 0, homed=True, device_time=0.001 * tick)
         memory, outputs = pilot.step(memory, Inputs(0.001, Phase.ENGAGED, False, hand, VehicleSample(), 0.0))
         seen.append(outputs)
     return seen

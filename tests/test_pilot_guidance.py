@@ -201,7 +201,7 @@ def hovering(strength: float, hand_reach: float, passivity: str = "observer"):
     energy = least = furthest = 0.0
     for step in range(3000):
         wanted = (hand_reach, 0.0, 0.0) if step > 200 else ZERO3
-        handle = HandleState(arm.position, arm.velocity, 0.0, 0, homed=True, device_time=0.0)
+        handle = HandleState(arm.position, arm.velocity, 0.0, 0, homed=True, device_time=step * DT)
         sample = VehicleSample(tuple(p), tuple(v))
         memory, out = which.step(
             memory, Inputs(DT, Phase.ENGAGED, False, handle, sample, 0.0, choices=GUIDED)

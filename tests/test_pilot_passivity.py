@@ -14,7 +14,7 @@ from groundstation.pilot.passivity.bounds import ACCELERATION
 from groundstation.pilot.passivity.choice import passivity_named
 from groundstation.pilot.passivity.gains import physical_damping
 from groundstation.pilot.passivity.off import Off
-from groundstation.pilot.passivity.port import CREDIT, STORE, Port
+from groundstation.pilot.passivity.port import CREDIT, STORE, Port, looked
 
 MODES = ("observer", "wave", "tank")
 DAMPING = physical_damping(DEVICE)
@@ -161,3 +161,36 @@ def test_no_motion_that_a_servo_can_foresee_draws_more_than_the_credit(mode, sce
             port = passivity.observed(port, tuple(a + d for a, d in zip(port.position, moved, strict=True)))
             assert given_to_hand <= CREDIT + 1e-9
             assert port.energy >= -CREDIT - 1e-9
+
+
+@every_mode
+@given(scenes)
+def test_no_motion_draws_more_than_the_credit_though_the_device_is_silent_for_some_ticks(
+    mode, scenes: list
+) -> None:
+    """A cable that falters: the last sample is all there is, and the hand moves on, to where the force gives most."""
+    passivity, port, sampled = passivity_named(mode, DEVICE), Port(), 0.0
+    for wanted, velocity, luck, delay, ticks in scenes:
+        sampled += DT
+        for tick in range(ticks):
+            port = looked(port, sampled, DT)
+            assert port.unseen == pytest.approx(tick * DT)
+            port = passivity.rendered(port, wanted, velocity, DT, delay)
+            if tick < ticks - 1:
+                port = passivity.observed(port, port.position)
+        span, strength = ticks * DT, max(hypot(*port.force), 1e-12)
+        beside = luck * 0.5 * ACCELERATION * span * span / strength
+        moved = [v * span + beside * f for v, f in zip(velocity, port.force, strict=True)]
+        port = passivity.observed(port, tuple(a + d for a, d in zip(port.position, moved, strict=True)))
+        assert port.energy >= -CREDIT - 1e-9
+
+
+@every_mode
+def test_the_force_comes_back_with_the_next_sample(mode) -> None:
+    passivity = passivity_named(mode, DEVICE)
+    port, wanted = Port(), (8.0, 0.0, 3.0)
+    for sampled in (0.1, *[0.2] * 50, 0.3):
+        port = passivity.rendered(looked(port, sampled, DT), wanted, ZERO3, DT, 0.1)
+        if port.unseen > 0.01:
+            assert hypot(*port.force) < 0.2
+    assert port.force == wanted

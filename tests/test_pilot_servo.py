@@ -196,6 +196,24 @@ def test_every_fault_ends_in_no_force_no_setpoint_and_words(
     assert not any(later.active for later in bench.world.setpoints.drain())
 
 
+def test_a_device_that_is_lost_has_not_moved_and_so_has_given_and_taken_nothing(bench: Bench) -> None:
+    """Read as if it were in its centre it had moved there at once, against the force that was held."""
+    bench.engage()
+    bench.stick = (0.05, 0.0, 0.0)
+    bench.run(0.6)
+    before = bench.world.pilots.newest()
+    assert before is not None
+    assert hypot(*bench.device.force) > 0.5
+    lose_stick(bench)
+    bench.run(0.6)
+    after, handle = bench.world.pilots.newest(), bench.world.handles.newest()
+    assert after is not None
+    assert handle is not None
+    assert after.phase == Phase.DISENGAGED
+    assert after.port_energy == pytest.approx(before.port_energy, abs=1e-6)
+    assert (handle.present, tuple(handle.position), tuple(handle.force)) == (0, (0.05, 0.0, 0.0), (0.0,) * 3)
+
+
 def test_nothing_that_is_not_a_number_reaches_the_bus(bench: Bench) -> None:
     bench.engage()
     bench.world.state.position[0] = nan

@@ -49,6 +49,7 @@ class Flight:
         if self.telemetry and self.tick % self.TELEMETRY == 0:
             moving = tuple(a + b for a, b in zip(world_rates(self.v, self.p[3]), self.wind, strict=True))
             self.sample, self.age = VehicleSample(self.p, (0.0,) * 4 if self.blocked else moving), 0.0
+        handle = handle._replace(device_time=self.tick * DT)
         inputs = Inputs(DT, self.phase, self.cut, handle, self.sample, self.age)
         self.memory, outputs = self.pilot.step(self.memory, inputs)
         self.v = tuple(
@@ -244,7 +245,14 @@ def test_the_force_has_no_line_at_the_telemetry_rate() -> None:
             # The drone swings by half a metre at 0.5 Hz, the hand rests: f = 4 N/m times the position.
             speed = 0.5 * pi * sin(pi * t + pi / 2)
             sample = VehicleSample((0.5 * sin(pi * t), 0.0, 2.0, 0.0), (speed, 0.0, 0.0, 0.0))
-        inputs = Inputs(DT, Phase.ENGAGED, cut=False, hand=hand(), vehicle=sample, state_age=tick % 20 * DT)
+        inputs = Inputs(
+            DT,
+            Phase.ENGAGED,
+            cut=False,
+            hand=hand()._replace(device_time=tick * DT),
+            vehicle=sample,
+            state_age=tick % 20 * DT,
+        )
         memory, outputs = pilot.step(memory, inputs)
         felt.append(outputs.force[0])
         stairs.append(4.0 * sample.position[0])

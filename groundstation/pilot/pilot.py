@@ -32,7 +32,7 @@ from groundstation.pilot.inputs import Inputs
 from groundstation.pilot.link_state import shares
 from groundstation.pilot.passivity.choice import passivity_named
 from groundstation.pilot.passivity.gains import Gains, passive_gains
-from groundstation.pilot.passivity.port import Port
+from groundstation.pilot.passivity.port import Port, looked
 from groundstation.pilot.presets import PRESETS
 from groundstation.pilot.reference import Reference, ReferenceGenerator
 from groundstation.pilot.setpoint import Commanded, Commanding, SetpointMaker, Terms
@@ -190,6 +190,7 @@ class Pilot:
             Memory for the next tick, and what to do in this one.
         """
         port = self._passivity.observed(memory.port, inputs.hand.position)
+        port = looked(port, inputs.hand.device_time, inputs.dt)
         fault = self._fault(inputs, memory.sight.sample)
         sight, p = memory.sight, memory.reference.p_h
         if not fault:

@@ -107,6 +107,7 @@ class Servo:
         self._engagement = Engagement()
         self._reason = ""
         self._last_t = clock()
+        self._place = ZERO3
         self._step_s = 0.0
         self._told_present, self._told_info = False, ABSENT
         self._fitted = self._taken = 0
@@ -215,7 +216,9 @@ class Servo:
     def _look(self, now: float, handle: HandleState | None) -> tuple[HandleState, Conditions]:
         """Return the handle, at rest where there is none, and what coupling depends on."""
         feed = self._feed
-        hand = handle if handle is not None else AT_REST
+        # Where nothing is known of it, it has not moved: from another place it would have worked on the force held.
+        hand = handle if handle is not None else AT_REST._replace(position=self._place)
+        self._place = hand.position
         self._homed = hand.homed
         east, north, up, _ = feed.sample.velocity
         conditions = Conditions(

@@ -57,15 +57,21 @@ def no_longer(force: Vector3, wanted: Vector3, damping: float) -> Vector3:
     return x * share, y * share, z * share
 
 
-def covered(force: Vector3, velocity: Vector3, dt: float, budget: float) -> Vector3:
+def covered(force: Vector3, velocity: Vector3, span: float, budget: float) -> Vector3:
     """Return the force, shortened until it cannot give more than `budget`, J, whatever motion the tick brings.
 
-    Within a tick the handle moves by v dt, and by at most r = ½ a dt² beside it. Then f·Δx ≤ f·v dt + |f| r, which
-    grows with the length of f. A force that brakes for certain needs no budget.
+    From when it was last seen until the next tick the handle moves by v dt, and by at most r = ½ a dt² beside it.
+    Then f·Δx ≤ f·v dt + |f| r, which grows with the length of f. A force that brakes for certain needs no budget.
+
+    Args:
+        force: N.
+        velocity: Of the handle as it was last seen, m/s.
+        span: From then until the next tick, s: the dt above.
+        budget: What may be given, J.
     """
     (x, y, z), (u, v, w) = force, velocity
-    unseen = 0.5 * ACCELERATION * dt * dt
-    most = (x * u + y * v + z * w) * dt + sqrt(x * x + y * y + z * z) * unseen
+    unseen = 0.5 * ACCELERATION * span * span
+    most = (x * u + y * v + z * w) * span + sqrt(x * x + y * y + z * z) * unseen
     if most <= 0.0 or most <= budget:
         return force
     share = max(0.0, budget) / most

@@ -41,4 +41,4 @@ class Observer(Passivity):
             most = self._damping_limit * speed
             allowed = max(affordable(budget - RESERVE, speed, dt), -most)
             force = no_longer(lowered(wanted, velocity, speed, allowed), wanted, most)
-        return held(port, covered(force, velocity, dt, budget), wanted, velocity, dt)
+        return held(port, covered(force, velocity, dt + port.unseen, budget), wanted, velocity, dt)

@@ -29,6 +29,8 @@ class Port(NamedTuple):
         force: Held on the hand since, N.
         dissipated: What has been taken out of the force so far to keep the account, J.
         line: Where the energy is that wave variables sent.
+        sampled: When the handle's newest sample was taken, s, as the device tells it.
+        unseen: Since that sample was new, s: the handle has moved on since, nobody knows where to.
     """
 
     energy: float = 0.0
@@ -36,6 +38,8 @@ class Port(NamedTuple):
     force: Vector3 = ZERO3
     dissipated: float = 0.0
     line: Line = Line()
+    sampled: float = 0.0
+    unseen: float = 0.0
 
 
 def work(port: Port, position: Vector3) -> float:
@@ -48,15 +52,29 @@ def booked(port: Port, position: Vector3, given: float) -> Port:
     """Return the port with the handle at `position`, m, and the work on its account; as it is if not finite."""
     if not isfinite(given):
         return port
-    return Port(min(port.energy - given, STORE), position, port.force, port.dissipated, port.line)
+    energy, _, force, dissipated, line, sampled, unseen = port
+    return Port(min(energy - given, STORE), position, force, dissipated, line, sampled, unseen)
+
+
+def looked(port: Port, sampled: float, dt: float) -> Port:
+    """Return the port with how long the handle has not been seen; its newest sample was taken at `sampled`, s."""
+    energy, position, force, dissipated, line, before, unseen = port
+    unseen = unseen + dt if sampled == before else 0.0
+    return Port(energy, position, force, dissipated, line, sampled, unseen)
+
+
+def with_line(port: Port, line: Line) -> Port:
+    """Return the port with another line."""
+    energy, position, force, dissipated, _, sampled, unseen = port
+    return Port(energy, position, force, dissipated, line, sampled, unseen)
 
 
 def held(port: Port, force: Vector3, wanted: Vector3, velocity: Vector3, dt: float) -> Port:
     """Return the port with the force to hold until the next tick, and what it gives less than the one wanted."""
-    energy, position, _, dissipated, line = port
+    energy, position, _, dissipated, line, sampled, unseen = port
     if force is not wanted:
         (x, y, z), (a, b, c), (u, v, w) = wanted, force, velocity
         taken = ((x - a) * u + (y - b) * v + (z - c) * w) * dt
         if 0.0 < taken < inf:
             dissipated += taken
-    return Port(energy, position, force, dissipated, line)
+    return Port(energy, position, force, dissipated, line, sampled, unseen)

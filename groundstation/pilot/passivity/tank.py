@@ -42,7 +42,7 @@ class Tank(Passivity):
             return held(port, ZERO3, wanted, velocity, dt)
         tank = level(port)
         force = wanted if speed <= STILL else self._damped(tank, wanted, velocity, speed, dt)
-        return held(port, covered(force, velocity, dt, tank), wanted, velocity, dt)
+        return held(port, covered(force, velocity, dt + port.unseen, tank), wanted, velocity, dt)
 
     def _damped(self, tank: float, wanted: Vector3, velocity: Vector3, speed: float, dt: float) -> Vector3:
         """Return the force wanted, less the damping that fills the tank, and no more than there is for the motion."""

@@ -18,7 +18,7 @@ from math import isfinite, sqrt
 from drivers.device import ZERO3, Vector3
 from groundstation.pilot.passivity.bounds import STILL, affordable, covered, no_longer
 from groundstation.pilot.passivity.line import carried, exchanged
-from groundstation.pilot.passivity.port import CREDIT, RESERVE, STORE, Port, held, work
+from groundstation.pilot.passivity.port import CREDIT, RESERVE, STORE, Port, booked, held, with_line, work
 from groundstation.pilot.passivity.scheme import Passivity
 
 
@@ -37,20 +37,20 @@ class Wave(Passivity):
         given = work(port, position)
         if not isfinite(given):
             return port
-        energy, _, force, dissipated, line = port
-        return Port(min(energy - given, STORE), position, force, dissipated, exchanged(line, -given))
+        port = booked(port, position, given)
+        return with_line(port, exchanged(port.line, -given))
 
     def rendered(self, port: Port, wanted: Vector3, velocity: Vector3, dt: float, delay: float) -> Port:
         """Return the port with the force of the wave that comes back; see `Passivity.rendered`."""
         u, v, w = velocity
         speed = sqrt(u * u + v * v + w * w)
         line = carried(port.line, dt, delay, STORE)
-        port = Port(port.energy, port.position, port.force, port.dissipated, line)
+        port = with_line(port, line)
         if not isfinite(speed):
             return held(port, ZERO3, wanted, velocity, dt)
         budget = CREDIT + min(port.energy, line.returned + line.packet)
         force = wanted if speed <= STILL else self._returning(budget, wanted, velocity, speed, dt)
-        return held(port, covered(force, velocity, dt, budget), wanted, velocity, dt)
+        return held(port, covered(force, velocity, dt + port.unseen, budget), wanted, velocity, dt)
 
     def _returning(
         self, budget: float, wanted: Vector3, velocity: Vector3, speed: float, dt: float

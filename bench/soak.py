@@ -32,6 +32,8 @@ _SAMPLE_S = 1.0
 _BETWEEN_S = (2.0, 6.0)
 _COUPLE_S = 45.0
 _REACH_M = 0.06
+# A process is stopped for no longer.
+_HELD_UP_S = 2.0
 # As many events as the screen keeps, and a few more.
 _SAID = 520
 _KEYS = (
@@ -112,7 +114,7 @@ class Soak:
                 yield f"{passed:6.0f} s: {self.done.total()} faults, {self.uncoupled} times not coupled again in time"
 
     def _look_round(self) -> None:
-        """Fill what is kept up to a number, open every page and view, fly to the landing once: no growth."""
+        """Fill what is kept up to a number, open every page, hold all up once, fly to the landing: no growth."""
         for number in range(_SAID):
             self.program.bus.event(Severity.INFO, f"Said before the soak begins, {number} of {_SAID}.")
             if number % 10 == 0:
@@ -121,6 +123,9 @@ class Soak:
         for key in (*_KEYS, *_KEYS):
             self.program.type(key)
             self._pass(1.0)
+        for role in self._pids:
+            self._hold_up(role, _HELD_UP_S)
+            self._couple()
         self._land()
         self._back()
 
@@ -207,9 +212,11 @@ class Soak:
         self._tap.passes = lambda _: True
 
     def _stop(self) -> None:
-        role = self._draw.choice(list(self._pids))
+        self._hold_up(self._draw.choice(list(self._pids)), self._draw.uniform(0.05, _HELD_UP_S))
+
+    def _hold_up(self, role: str, seconds: float) -> None:
         os.kill(self._pids[role], signal.SIGSTOP)
-        self._pass(self._draw.uniform(0.05, 2.0))
+        self._pass(seconds)
         os.kill(self._pids[role], signal.SIGCONT)
 
     def _silence(self) -> None:

@@ -38,6 +38,7 @@ from groundstation.training.director import Director
 from groundstation.training.judgement import Judgement, judgement_of
 from groundstation.training.measurer import Measurer
 from groundstation.training.mission import MISSIONS_FOLDER, load_mission
+from groundstation.training.score import Score, score_of
 from groundstation.training.sights import Sights
 from sim.environment.world import World
 
@@ -294,6 +295,11 @@ class CannedFollower:
     def director(self) -> Director:
         """Knows how it is going."""
         return self.attempts.current.director
+
+    @property
+    def score(self) -> Score | None:
+        """Of the flight as far as it has come."""
+        return score_of(self.director.mission, self.measurer.measures(), self._par)
 
     def look(self, view: Snapshot) -> None:
         """Take note of a snapshot."""

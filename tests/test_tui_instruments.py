@@ -269,7 +269,7 @@ async def test_the_mission_shows_stage_way_clock_and_score():
         assert "of 5 points" in words
         assert "of 01:30 min" in words
         assert "of 100 points so far" in words
-        assert [part.name for part in scene.app._score.parts if part.name not in words] == []
+        assert [part.name for part in scene.app.score.parts if part.name not in words] == []
         rows = Mission().draw(scene.app._latest, 60, 20)
         assert any("comes when the target is held" in "".join(text for text, _ in row) for row in rows)
 

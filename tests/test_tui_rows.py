@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from groundstation.tui.rows import bar, clock, fit, gauge, quantity, span_of_time, spread, width_of
+from groundstation.tui.rows import bar, clock, fit, gauge, quantity, shortened, span_of_time, spread, width_of
 from groundstation.tui.theme import Tone
 
 anything = st.floats(allow_nan=True, allow_infinity=True)
@@ -107,3 +107,17 @@ def test_a_gauge_grows_from_the_left_and_warns_at_its_limit():
 @given(value=anything, limit=anything, width=st.integers(0, 60))
 def test_a_gauge_always_has_its_width(value, limit, width):
     assert width_of(gauge(value, limit, width, Tone.FORCE)) == width
+
+
+@given(st.text("ab 那", max_size=30), st.integers(-2, 40))
+def test_what_is_shortened_fits_and_says_so(words, width):
+    found = shortened(words, width)
+    assert len(found) <= max(width, 0) or found == words == ""
+    assert found == words or found.endswith("…") or width <= 0
+
+
+def test_only_whole_words_are_left():
+    title = "A yard with a few things to fly around"
+    assert shortened(title, 37) == "A yard with a few things to fly …"
+    assert shortened(title, 38) == title
+    assert shortened("around", 4) == "aro…"

@@ -8,6 +8,7 @@ from rich.text import Text
 from groundstation.progress.desk import Report
 from groundstation.progress.skills import Record
 from groundstation.progress.words import NEXT, PASSED, counted, due_words, hours, mark, number, trend
+from groundstation.tui.rows import shortened
 from groundstation.tui.theme import Tone
 
 _NAME, _TREND, _DUE = 12, 8, 28
@@ -52,7 +53,10 @@ def line(record: Record, report: Report, width: int, styles: Styles) -> Text:
     text.append(f" {sign} ", styles[tone])
     text.append(f"{record.mission.name:<{_NAME}} ", styles[tone])
     room = _title_width(width)
-    text.append(_cut(record.mission.title, room), styles[Tone.TEXT if record.open else Tone.FAINT])
+    text.append(
+        f"{shortened(record.mission.title, room - 1):<{room}}",
+        styles[Tone.TEXT if record.open else Tone.FAINT],
+    )
     text.append(f"{record.mission.level:>3} ", styles[Tone.MUTED])
     text.append(f"{number(record.best):>4} ", styles[Tone.STRONG])
     text.append(f"{trend(record.points, _TREND):<{_TREND}}  ", styles[Tone.VEHICLE])
@@ -64,9 +68,3 @@ def line(record: Record, report: Report, width: int, styles: Styles) -> Text:
 def _title_width(width: int) -> int:
     fixed = 3 + _NAME + 1 + 4 + 5 + _TREND + 2 + _DUE
     return width - fixed if width >= _WIDE else 0
-
-
-def _cut(words: str, width: int) -> str:
-    if width <= 0:
-        return ""
-    return f"{words:<{width}}" if len(words) < width else f"{words[: width - 2]}… "

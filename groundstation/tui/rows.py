@@ -105,6 +105,14 @@ def wrapped(text: str, width: int) -> list[str]:
     return lines
 
 
+def shortened(words: str, width: int) -> str:
+    """Return as many whole words as there is room for, with … where some are left out."""
+    if len(words) <= width:
+        return words
+    kept = f"{wrapped(words, max(width - 2, 0))[0]} …"
+    return kept if len(kept) <= width else f"{words[: max(width - 1, 0)]}…"[: max(width, 0)]
+
+
 def bar(value: float | None, limit: float, width: int, tone: Tone, mark: float | None = None) -> Row:
     """Return a signed bar from the middle, half a cell fine, with a mark for a second value.
 

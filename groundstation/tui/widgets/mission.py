@@ -9,7 +9,7 @@ from groundstation.training.mission import Mission as MissionFile
 from groundstation.tui.directions import title, way_of, whereabouts
 from groundstation.tui.frame import Frame
 from groundstation.tui.notes import words
-from groundstation.tui.rows import UNKNOWN, Row, clock, gauge, quantity, width_of
+from groundstation.tui.rows import UNKNOWN, Row, clock, gauge, quantity, shortened, width_of
 from groundstation.tui.theme import Tone
 from groundstation.tui.widgets.instrument import Instrument
 
@@ -34,7 +34,7 @@ class Mission(Instrument):
         mission = frame.run.mission
         if mission is None:
             return [[(" free flight: nothing is asked for", Tone.MUTED)]]
-        rows = [_row("mission", (mission.title[: max(width - _LABEL - 2, 0)], Tone.TEXT))]
+        rows = [_row("mission", (shortened(mission.title, width - _LABEL - 2), Tone.TEXT))]
         rows += _next(frame, width)
         rows += _progress(frame, mission, width)
         return [*rows, *_score(frame, width)][:height]
@@ -50,8 +50,8 @@ def _next(frame: Frame, width: int) -> list[Row]:
     if guide is None or way is None:
         return []
     rows = [
-        _row("next", (title(guide)[: max(width - _LABEL - 2, 0)], Tone.TARGET)),
-        _row("", (_where(guide, way)[: max(width - _LABEL - 2, 0)], Tone.STRONG)),
+        _row("next", (shortened(title(guide), width - _LABEL - 2), Tone.TARGET)),
+        _row("", (shortened(_where(guide, way), width - _LABEL - 2), Tone.STRONG)),
     ]
     if guide.held_s > 0.0 and guide.hold_s:
         head, figure = _row("stay"), f" {guide.held_s:.1f} of {guide.hold_s:g} s"

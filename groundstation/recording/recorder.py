@@ -49,13 +49,13 @@ def record(run: Run, bus: Bus, lifeline: Lifeline) -> None:
         bus.event(Severity.INFO, f"Removed the oldest flights, {words}: over recording.folder_gb.")
     start = start_of(run.started, datetime.datetime.now().astimezone(), time.monotonic())
     session = Session(run, start, bus.event)
-    due = Every(_LIVE_BATCH_S if run.viewer_url else _BATCH_S)
+    batches = Every(_LIVE_BATCH_S if run.viewer_url else _BATCH_S)
     waiting = deque[Batch]()
     pacer, give_back = Pacer(_TURN_S), Every(heap.GIVE_BACK_S)
     while lifeline.holds():
         if taps.drain():
             bus.event(Severity.WARNING, "The recorder was held up for seconds; handle samples are missing.")
-        if due.due(time.monotonic()):
+        if batches.due(time.monotonic()):
             waiting.extend(taps.take().parts(_LONGEST_S))
             if give_back.due(time.monotonic()):
                 heap.give_back()

@@ -28,13 +28,15 @@ _LIVE_BATCH_S = 0.1
 # What has piled up while the process was held up goes in parts of at most so long, one a turn.
 _LONGEST_S = 1.0
 _NICENESS = 10
+# Arrow's own allocator, and Rerun's, would keep what they have taken for themselves: 3 to 5 MB, and 3 MB.
+_GIVES_BACK = {"ARROW_DEFAULT_MEMORY_POOL": "system", "MIMALLOC_PURGE_DELAY": "0"}
 
 
 def record(run: Run, bus: Bus, lifeline: Lifeline) -> None:
     """Record until the lifeline no longer holds."""
     heap.take_one_arena()
-    # Arrow's own allocator would keep what it has taken for itself: 3 to 5 MB.
-    os.environ.setdefault("ARROW_DEFAULT_MEMORY_POOL", "system")
+    for allocator, value in _GIVES_BACK.items():
+        os.environ.setdefault(allocator, value)
     taps = Taps(bus)
     # Rerun takes seconds to import on a busy machine, longer than the taps hold. The heart begins to beat after it.
     opening = threading.Thread(target=importlib.import_module, args=("groundstation.recording.session",))
@@ -44,6 +46,7 @@ def record(run: Run, bus: Bus, lifeline: Lifeline) -> None:
         opening.join(_TURN_S)
     from groundstation.recording.session import Session
 
+    heap.take_small_blocks()
     if removed := make_room(run.recording.parent, run.settings.recording.folder_gb, run.recording.stem):
         words = f"{removed[0]} to {removed[-1]}" if len(removed) > 1 else removed[0]
         bus.event(Severity.INFO, f"Removed the oldest flights, {words}: over recording.folder_gb.")

@@ -27,7 +27,7 @@ def take_one_arena() -> None:
 
 
 def take_small_blocks() -> None:
-    """Have NumPy take at once the small blocks that it keeps: some 0.7 MB.
+    """Have NumPy take at once the small blocks that it keeps: some 0.9 MB, in 3 ms.
 
     NumPy 2 keeps up to seven freed blocks of each size under 1,024 bytes. Taken whenever a size is first met, over an
     hour, they lie between larger ones, whose pages then cannot be given back.

@@ -156,6 +156,7 @@ class Session:
             self._tell(_DISK_LOW.severity, f"The disk of {file.path.parent} has {_DISK_LOW.say(c)}.")
 
     def _end_part(self, file: FlightFile) -> None:
+        """End a file that another follows, and give back what it took, unless that waits for a viewer."""
         self._end(file)
         if self._feed is None:
             free_ended()

@@ -57,7 +57,13 @@ def booked(port: Port, position: Vector3, given: float) -> Port:
 
 
 def looked(port: Port, sampled: float, dt: float) -> Port:
-    """Return the port with how long the handle has not been seen; its newest sample was taken at `sampled`, s."""
+    """Return the port with how long the handle has not been seen, after a tick.
+
+    Args:
+        port: Of the tick before.
+        sampled: When the handle's newest sample was taken, s; the same as before where none has come since.
+        dt: Since the last tick, s.
+    """
     energy, position, force, dissipated, line, before, unseen = port
     unseen = unseen + dt if sampled == before else 0.0
     return Port(energy, position, force, dissipated, line, sampled, unseen)

@@ -146,8 +146,9 @@ class Bus:
         self._events.send(record)
 
     def heartbeat(self) -> None:
-        """Tell the supervisor that this process's loop turns."""
+        """Tell the supervisor that this process's loop turns, and who has come since what was said before."""
         self._heartbeats.send(Heartbeat(t=time.monotonic(), role=self._role.encode(), pid=os.getpid()))
+        self._events.welcome()
 
     def close(self) -> None:
         """Leave the bus."""

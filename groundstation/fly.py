@@ -14,6 +14,7 @@ from typing import NoReturn
 
 import msgspec
 
+from groundstation import heap
 from groundstation.bus import Bus
 from groundstation.config import Settings, check_flown_by_rate, load_settings, usual_file
 from groundstation.connecting import note
@@ -41,6 +42,7 @@ def fly(asked: argparse.Namespace) -> int:
     Raises:
         InputError: Something asked for cannot be.
     """
+    heap.arrange()
     while True:
         _check(asked)
         run = accompanied(plan(asked), asked)

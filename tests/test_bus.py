@@ -80,6 +80,16 @@ def test_a_late_reader_still_gets_the_last_events(bus):
     assert [event.text.decode() for event in late.drain()] == ["something happened", "and more"]
 
 
+def test_who_comes_late_need_not_wait_for_another_event(bus):
+    bus.event(Severity.WARNING, "something happened")
+    late = bus.subscriber(EVENT)
+    bus.heartbeat()
+    assert [event.text.decode() for event in late.drain()] == ["something happened"]
+    bus.heartbeat()
+    bus.event(Severity.INFO, "and more")
+    assert [event.text.decode() for event in late.drain()] == ["and more"]
+
+
 def test_long_texts_are_cut_between_characters():
     assert fit("ä" * 300, 240).decode() == "ä" * 119
     assert len(fit("x" * 300, 240)) == 239

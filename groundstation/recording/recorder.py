@@ -34,7 +34,7 @@ _GIVES_BACK = {"ARROW_DEFAULT_MEMORY_POOL": "system", "MIMALLOC_PURGE_DELAY": "0
 
 def record(run: Run, bus: Bus, lifeline: Lifeline) -> None:
     """Record until the lifeline no longer holds."""
-    heap.take_one_arena()
+    heap.arrange()
     for allocator, value in _GIVES_BACK.items():
         os.environ.setdefault(allocator, value)
     taps = Taps(bus)

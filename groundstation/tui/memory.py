@@ -24,7 +24,6 @@ _THRESHOLDS = (2_000, 20, 100_000)
 
 def settle() -> None:
     """Take what there is for what stays."""
-    heap.take_one_arena()
     heap.take_small_blocks()
     gc.collect()
     gc.freeze()

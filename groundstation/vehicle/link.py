@@ -37,7 +37,7 @@ _SYSTEM_ID, _COMPONENT_ID = 255, 190
 
 def body(run: Run, bus: Bus, lifeline: Lifeline) -> None:
     """Run the link until the lifeline ends."""
-    heap.take_one_arena()
+    heap.arrange()
     give_back = Every(heap.GIVE_BACK_S)
     notes: Notes = queue.SimpleQueue()
     # It complains of a connection that is about to come; its lines count from when that is there. Subscribing

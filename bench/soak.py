@@ -36,6 +36,8 @@ _REACH_M = 0.06
 _HELD_UP_S = 2.0
 # As many events as the screen keeps, and a few more.
 _SAID = 520
+# Some three minutes of recording: its parts are begun and ended all the time.
+_CONFIG = "[recording]\npart_mb = 60\n"
 _KEYS = (
     "\x1b[18~",
     "\x1b[19~",
@@ -76,9 +78,11 @@ class Soak:
         self._start_vehicle()
         address = str(folder / "hand.sock")
         self._hand = Hand(address)
+        config = folder / "config.toml"
+        config.write_text(_CONFIG)
         self.program = Program(
             "--connect", f"udpout://127.0.0.1:{self._tap.program_port}", "--device", f"virtual:{address}",
-            "--mission", "free", "--logs", str(folder), columns=120, rows=40,
+            "--mission", "free", "--logs", str(folder), "--config", str(config), columns=120, rows=40,
         )  # fmt: skip
         self._pids = {"screen": self.program.process.pid, **self.program.pids()}
         self._next_sample = 0.0

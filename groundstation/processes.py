@@ -24,6 +24,7 @@ from groundstation.failsafe import BY_FAULT, Action, Fault, Who, first, rows
 from groundstation.messages import COMMAND, HEARTBEAT, Command, CommandKind, Severity
 from groundstation.run import Run, write_run
 from groundstation.run_folder import Stay, run_folder, sweep
+from groundstation.shown import shown
 
 SILENT_S = 1.0
 _STARTING_S = 15.0
@@ -170,7 +171,9 @@ class Supervisor:
             if watched.state is State.ENDED:
                 return ""
             watched.state = State.ENDED
-            return f"The {role} process has died ({_cause(code)}){_last_words(watched.log)}."
+            # Who is killed has no say; what it said last is not why.
+            words = _last_words(watched.log) if code >= 0 else ""
+            return f"The {role} process has died ({_cause(code)}){words}."
         watched.beat_t = beats.get(role, watched.beat_t)
         if not watched.process.beats or now - watched.beat_t <= SILENT_S:
             watched.state = State.RUNNING
@@ -221,4 +224,4 @@ def _last_words(log: Path) -> str:
     except OSError:
         return ""
     words = next((line.strip() for line in reversed(lines) if line.strip()), "")
-    return f": {words.rstrip('.')}" if words else ""
+    return f": {shown(words.rstrip('.'))}" if words else ""

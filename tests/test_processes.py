@@ -107,6 +107,25 @@ def test_a_process_that_ends_badly_leaves_its_last_words(run, bus):
     supervisor.stop()
 
 
+def test_what_a_killed_process_said_last_is_not_taken_for_the_reason(run, bus):
+    script = "import sys, time; print('all is \\x1b[1mwell', flush=True); time.sleep(60)"
+    supervisor = Supervisor(run, (Process("child", (sys.executable, "-c", script), beats=False),), bus)
+    log = run_folder(run.run_id) / "child.log"
+    until(log.read_bytes)
+    os.kill(pid_of(supervisor), signal.SIGKILL)
+    (news,) = until(supervisor.poll)
+    assert news == "The child process has died (killed by SIGKILL)."
+    supervisor.stop()
+
+
+def test_last_words_move_no_cursor(run, bus):
+    process = Process("child", (sys.executable, "-c", "raise SystemExit('the port is \\x1b[1mtaken')"))
+    supervisor = Supervisor(run, (process,), bus)
+    (news,) = until(supervisor.poll)
+    assert news == "The child process has died (exit code 1): the port is ?[1mtaken."
+    supervisor.stop()
+
+
 def test_a_stopped_process_is_told_silent_and_still_ends(run, bus):
     supervisor = Supervisor(run, (child(run),), bus)
     until(lambda: not supervisor.poll() and supervisor.states()["child"] is State.RUNNING)

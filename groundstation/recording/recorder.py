@@ -30,13 +30,15 @@ _LONGEST_S = 1.0
 _NICENESS = 10
 # Arrow's own allocator, and Rerun's, would keep what they have taken for themselves: 3 to 5 MB, and 3 MB.
 _GIVES_BACK = {"ARROW_DEFAULT_MEMORY_POOL": "system", "MIMALLOC_PURGE_DELAY": "0"}
+# It warns of every file without an index, which is how a flight is recorded: the index is made at its end.
+_SAYS_LITTLE = {"RUST_LOG": "error"}
 
 
 def record(run: Run, bus: Bus, lifeline: Lifeline) -> None:
     """Record until the lifeline no longer holds."""
     heap.arrange()
-    for allocator, value in _GIVES_BACK.items():
-        os.environ.setdefault(allocator, value)
+    for name, value in (_GIVES_BACK | _SAYS_LITTLE).items():
+        os.environ.setdefault(name, value)
     taps = Taps(bus)
     # Rerun takes seconds to import on a busy machine, longer than the taps hold. The heart begins to beat after it.
     opening = threading.Thread(target=importlib.import_module, args=("groundstation.recording.session",))

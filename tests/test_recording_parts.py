@@ -5,6 +5,8 @@ from __future__ import annotations
 import fcntl
 import os
 import shutil
+import subprocess
+import sys
 from pathlib import Path
 
 import msgspec
@@ -81,6 +83,47 @@ def test_a_part_that_ended_leaves_no_thread_behind(tmp_path):
     free_ended()
     # The viewer's layout is converted once a flight, and keeps two.
     assert threads() <= before + 2
+
+
+# What was written is given back in a thread of Rerun's, which needs the interpreter for it.
+OPENS_AND_FREES = """
+import os, sys, threading
+from pathlib import Path
+import numpy as np
+import rerun as rr
+from groundstation.recording.file import FlightFile, free_ended
+from groundstation.recording.item import Chunk, time_column
+
+folder, ended = Path(sys.argv[1]), threading.Event()
+
+def free():
+    while not ended.is_set():
+        free_ended()
+
+running = FlightFile(folder / "running.rrd", "flight", None)
+freeing = threading.Thread(target=free)
+freeing.start()
+for number in range(60):
+    t = np.arange(2000.0)
+    columns = rr.Scalars.columns(scalars=t.copy())
+    running.write(Chunk(f"/{name}", time_column(t), columns) for name in range(20))
+    part = FlightFile(folder / f"{number}.rrd", "flight", None)
+    part._closing.set()
+    part._stream.disconnect()
+ended.set()
+freeing.join()
+os.write(1, b"ended")
+os._exit(0)
+"""
+
+
+def test_a_part_can_begin_while_another_is_given_back(tmp_path):
+    """Rerun held its list for the one and the interpreter for the other, and waited for each with the other."""
+    command = [sys.executable, "-c", OPENS_AND_FREES, str(tmp_path)]
+    told = subprocess.run(
+        command, env=os.environ | {"RUST_LOG": "off"}, capture_output=True, text=True, check=True, timeout=90
+    )
+    assert told.stdout == "ended"
 
 
 def test_parts_are_one_flight_in_the_list_and_in_the_viewer(long_flight):

@@ -29,6 +29,9 @@ _ORDER_S = 5.0
 _FLUSH_S = 10.0
 _FULL_BYTES = 1 << 20
 _FULL = BY_FAULT[Fault.DISK_FULL]
+# Rerun 0.41 makes a stream while it holds the interpreter, and waits for its list of streams. `free_ended` holds that
+# list, and waits for a stream to be written out, which needs the interpreter to let go of our numbers: never both.
+_STREAMS = threading.Lock()
 
 
 class RecordingError(Exception):
@@ -49,7 +52,8 @@ class FlightFile:
 
     def __init__(self, path: Path, recording_id: str, blueprint: rrb.Blueprint | None) -> None:
         self.path, self._fd = _take(path)
-        self._stream = rr.RecordingStream(schema.APPLICATION, recording_id=recording_id)
+        with _STREAMS:
+            self._stream = rr.RecordingStream(schema.APPLICATION, recording_id=recording_id)
         self._failure = ""
         try:
             # With one it would keep something of every chunk in memory, 0.3 MB a second; `close` adds it.
@@ -115,7 +119,8 @@ def free_ended() -> None:
 
     It waits for what others that still run have to send: no stream to a viewer may be open, which may never read.
     """
-    rerun_bindings.flush_and_cleanup_orphaned_recordings()
+    with _STREAMS:
+        rerun_bindings.flush_and_cleanup_orphaned_recordings()
 
 
 def _take(path: Path) -> tuple[Path, int]:

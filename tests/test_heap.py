@@ -28,7 +28,8 @@ def marked(size, mark):
 if "arranged" in sys.argv:
     heap.arrange()
 libc.free(libc.malloc(4 << 20))
-large = marked(100 << 10, BY_ITSELF)
+# Larger than any hole that is there already: those are filled first.
+large = marked(2 << 20, BY_ITSELF)
 small = marked(1 << 10, BY_ITSELF)
 threads = []
 thread = threading.Thread(target=lambda: threads.append(marked(3 << 10, OF_A_THREAD)))

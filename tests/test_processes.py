@@ -99,11 +99,15 @@ def test_a_killed_process_is_told_once_with_the_signal(run, bus):
     supervisor.stop()
 
 
-def test_a_process_that_ends_badly_leaves_its_last_words(run, bus):
-    process = Process("child", (sys.executable, "-c", "raise SystemExit('the port is taken.')"))
+@pytest.mark.parametrize(
+    ("said", "told"),
+    [("the port is taken.", "the port is taken."), ("it is \\x1b[1mtaken", "it is ?[1mtaken.")],
+)
+def test_a_process_that_ends_badly_leaves_its_last_words_which_move_no_cursor(run, bus, said, told):
+    process = Process("child", (sys.executable, "-c", f"raise SystemExit('{said}')"))
     supervisor = Supervisor(run, (process,), bus)
     (news,) = until(supervisor.poll)
-    assert news == "The child process has died (exit code 1): the port is taken."
+    assert news == f"The child process has died (exit code 1): {told}"
     supervisor.stop()
 
 
@@ -115,14 +119,6 @@ def test_what_a_killed_process_said_last_is_not_taken_for_the_reason(run, bus):
     os.kill(pid_of(supervisor), signal.SIGKILL)
     (news,) = until(supervisor.poll)
     assert news == "The child process has died (killed by SIGKILL)."
-    supervisor.stop()
-
-
-def test_last_words_move_no_cursor(run, bus):
-    process = Process("child", (sys.executable, "-c", "raise SystemExit('the port is \\x1b[1mtaken')"))
-    supervisor = Supervisor(run, (process,), bus)
-    (news,) = until(supervisor.poll)
-    assert news == "The child process has died (exit code 1): the port is ?[1mtaken."
     supervisor.stop()
 
 

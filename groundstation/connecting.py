@@ -25,6 +25,7 @@ def connect(asked: argparse.Namespace) -> bool:
         InputError: The settings are wrong.
     """
     from groundstation.tui.connect import Connect, Offers
+    from groundstation.tui.hangup import watched
 
     settings = load_settings(asked.config)
 
@@ -32,7 +33,8 @@ def connect(asked: argparse.Namespace) -> bool:
         return discover_all(settings.devices)
 
     offers = Offers(_places, devices, _missions(asked), recent(asked.logs), settings.buttons)
-    chosen = Connect(offers, device=asked.device or "", mission=asked.mission or "").run()
+    with watched():
+        chosen = Connect(offers, device=asked.device or "", mission=asked.mission or "").run()
     if chosen is None:
         return False
     asked.sim, asked.connect = not chosen.connect, chosen.connect or None

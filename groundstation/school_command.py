@@ -18,6 +18,7 @@ def run(asked: argparse.Namespace) -> int:
     Raises:
         InputError: There is no terminal, or what was asked for cannot be flown.
     """
+    from groundstation.tui.hangup import watched
     from groundstation.tui.school import School
 
     if not has_screen(os.environ):
@@ -26,7 +27,8 @@ def run(asked: argparse.Namespace) -> int:
     asked.pilot = asked.pilot if asked.pilot is not None else login_name()
     code = 0
     while not code:
-        wish = School(Desk(asked.logs), asked.pilot).run()
+        with watched():
+            wish = School(Desk(asked.logs), asked.pilot).run()
         if wish is None:
             break
         asked.mission, asked.pilot = wish

@@ -7,11 +7,13 @@ without force and the vehicle holding, close their logs, and the last one sweeps
 
 from __future__ import annotations
 
+import contextlib
 import os
 import select
 import signal
+import sys
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Generator
 
 _POLL_MS = 200
 
@@ -43,6 +45,16 @@ class HangupWatch:
             if self._poll.poll(_POLL_MS):
                 self._gone()
                 return
+
+
+@contextlib.contextmanager
+def watched() -> Generator[None]:
+    """End the program at once should its terminal go while the block runs."""
+    watch = HangupWatch(sys.stdin.fileno())
+    try:
+        yield
+    finally:
+        watch.stop()
 
 
 def _end_at_once() -> None:

@@ -18,7 +18,7 @@ from groundstation.tui import memory
 from groundstation.tui.app import FlightApp
 from groundstation.tui.frame import Reader, Supervisor
 from groundstation.tui.hand import StickSender
-from groundstation.tui.hangup import HangupWatch
+from groundstation.tui.hangup import watched
 from groundstation.tui.instructing import Instructing
 from groundstation.tui.wish import Ending
 
@@ -49,11 +49,10 @@ def run_screen(
         on_workload=on_workload,
         tell=tell,
     )
-    watch = HangupWatch(sys.stdin.fileno())
     try:
-        code = app.run()
+        with watched():
+            code = app.run()
     finally:
-        watch.stop()
         memory.leave()
     return Ending((app.return_code or 0) if code is None else code, app.wish)
 
